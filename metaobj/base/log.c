@@ -1,0 +1,81 @@
+#include "metaobj/base/log.h"
+
+#include "metaobj/base/clock.h"
+
+#include <pthread.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <unistd.h>
+
+// The only mutable globals of the base: the log is one per process.
+static struct {
+    prom_log_level level;
+    bool line_open; // a progress line is on the terminal
+    pthread_mutex_t lock;
+} state = {.level = PROM_LOG_INFO, .lock = PTHREAD_MUTEX_INITIALIZER};
+
+static void clear_line(void)
+{
+    if (state.line_open) fputs("\r\033[K", stderr);
+    state.line_open = false;
+}
+
+void prom_log_set_level(prom_log_level level)
+{
+    state.level = level;
+}
+
+void prom_log(prom_log_level level, const char *format, ...)
+{
+    static const char *const prefix[] = {"error: ", "warning: ", "", "debug: "};
+    if (level > state.level) return;
+    pthread_mutex_lock(&state.lock);
+    clear_line();
+    fputs(prefix[level], stderr);
+    va_list args;
+    va_start(args, format);
+    vfprintf(stderr, format, args);
+    va_end(args);
+    fputc('\n', stderr);
+    pthread_mutex_unlock(&state.lock);
+}
+
+void prom_progress_begin(prom_progress *progress, const char *stage, uint64_t total)
+{
+    double now = prom_clock_ms();
+    *progress = (prom_progress){.stage = stage, .total = total, .start_ms = now, .shown_ms = now};
+}
+
+static void show(const prom_progress *p, double now)
+{
+    double seconds = (now - p->start_ms) / 1000.0;
+    double rate = seconds > 0 ? (double)p->done / seconds : 0;
+    clear_line();
+    fprintf(stderr, "%s: %llu", p->stage, (unsigned long long)p->done);
+    if (p->total) fprintf(stderr, "/%llu", (unsigned long long)p->total);
+    fprintf(stderr, ", %.1f/s", rate);
+    if (p->total > p->done && rate > 0)
+        fprintf(stderr, ", %.0f s left", (double)(p->total - p->done) / rate);
+    fflush(stderr);
+    state.line_open = true;
+}
+
+void prom_progress_step(prom_progress *progress, uint64_t units)
+{
+    pthread_mutex_lock(&state.lock);
+    progress->done += units;
+    double now = prom_clock_ms();
+    if (now - progress->shown_ms > 100.0) {
+        progress->shown_ms = now;
+        if (state.level >= PROM_LOG_INFO && isatty(STDERR_FILENO)) show(progress, now);
+    }
+    pthread_mutex_unlock(&state.lock);
+}
+
+void prom_progress_end(prom_progress *progress)
+{
+    double seconds = (prom_clock_ms() - progress->start_ms) / 1000.0;
+    prom_log(PROM_LOG_INFO, "%s: %llu in %.1f s", progress->stage,
+             (unsigned long long)progress->done, seconds);
+}

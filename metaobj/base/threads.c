@@ -1,0 +1,52 @@
+#include "metaobj/base/threads.h"
+
+#include "metaobj/base/alloc.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <stdatomic.h>
+
+typedef struct job {
+    atomic_size_t next;
+    size_t count;
+    void (*body)(void *, size_t, unsigned);
+    void *user;
+} job;
+
+typedef struct worker {
+    job *job;
+    unsigned index;
+    pthread_t thread;
+} worker;
+
+unsigned prom_thread_count(void)
+{
+    cpu_set_t set;
+    if (sched_getaffinity(0, sizeof set, &set)) return 1;
+    int n = CPU_COUNT(&set);
+    return n < 1 ? 1 : n > 64 ? 64 : (unsigned)n;
+}
+
+static void *work(void *argument)
+{
+    worker *w = argument;
+    for (size_t i; (i = atomic_fetch_add(&w->job->next, 1)) < w->job->count;)
+        w->job->body(w->job->user, i, w->index);
+    return NULL;
+}
+
+void prom_parallel_for(size_t count, void (*body)(void *user, size_t i, unsigned thread),
+                       void *user)
+{
+    job j = {.count = count, .body = body, .user = user};
+    unsigned threads = prom_thread_count();
+    if (threads > count) threads = count ? (unsigned)count : 1;
+    worker *workers = prom_calloc(threads, sizeof *workers);
+    for (unsigned t = 0; t < threads; t++) workers[t] = (worker){.job = &j, .index = t};
+    unsigned started = 0;
+    for (unsigned t = 1; t < threads; t++, started++)
+        if (pthread_create(&workers[t].thread, NULL, work, &workers[t])) break;
+    work(&workers[0]);
+    for (unsigned t = 1; t <= started; t++) pthread_join(workers[t].thread, NULL);
+    prom_free(workers);
+}

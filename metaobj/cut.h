@@ -1,0 +1,31 @@
+// The cut: what is drawn in a frame.
+#ifndef PROM_METAOBJ_CUT_H
+#define PROM_METAOBJ_CUT_H
+
+#include "metaobj/base/alloc.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef struct prom_cut_entry {
+    uint32_t node;
+    uint32_t rep;       // index into the model's representations
+    float level;        // continuous level, 0 for discrete kinds
+    uint32_t fade_from; // representation that it replaces, or PROM_NONE
+    float fade;         // 1 when the change is complete
+    float depth;        // distance from the eye to the node's nearest point, for the draw order
+} prom_cut_entry;
+
+// Exactly one entry on every root-to-leaf path whose leaf is in the frustum.
+typedef struct prom_cut {
+    PROM_ARRAY(prom_cut_entry) entries; // the array keeps its memory from frame to frame
+    double predicted_ms;   // fixed part + all entries, before the correction factor
+    double cmin_ms;        // the same for the cheapest cut
+    double benefit, loss;  // weighted pixels shown right, and wrong (DESIGN: benefit)
+    bool feasible;         // predicted_ms is within the budget that the selector was given
+    uint32_t nodes_visited;
+} prom_cut;
+
+void prom_cut_finish(prom_cut *cut);
+
+#endif

@@ -1,0 +1,35 @@
+// The cost model (DESIGN 6): predicted milliseconds = fixed + sum over the cut of
+// k_draw*draws + k_vertex*vertices + k_triangle*triangles + k_pixel[kind]*shaded pixels.
+#ifndef PROM_TRAVERSE_COST_H
+#define PROM_TRAVERSE_COST_H
+
+#include "metaobj/base/status.h"
+#include "metaobj/cost_features.h"
+
+typedef struct prom_cost_model {
+    double fixed_ms, draw_ms, vertex_ms, triangle_ms, pixel_ms[PROM_SHADE_COUNT];
+    double overdraw;     // shaded pixels per footprint pixel of a cut; >= 1, 1 when unknown
+    double mean_error;   // of the fit: mean |predicted/actual - 1|
+    double worst_under;  // greatest actual/predicted - 1
+    double margin;       // part of the budget kept back for noise, from repeats at calibration
+    uint32_t sample_count;
+    char renderer[128];
+} prom_cost_model;
+
+// Non-negative least squares with 1/T weights (relative errors). Fails with fewer samples than
+// coefficients or a non-finite sample.
+prom_status prom_cost_fit(const prom_cost_sample *samples, size_t count,
+                          prom_cost_model *model, prom_error *error);
+double prom_cost_predict(const prom_cost_model *model, const prom_cost_features *features);
+// A representation that covers `pixels` pixels in this view (overdraw applied inside).
+double prom_cost_of_rep(const prom_cost_model *model, const prom_representation *rep,
+                        double pixels);
+
+// JSON profile files (docs/FORMAT.md). Loading checks every number.
+prom_status prom_cost_save(const prom_cost_model *model, const char *path, prom_error *error);
+prom_status prom_cost_load(const char *path, prom_cost_model *model, prom_error *error);
+// The profile's place for a renderer: $XDG_CACHE_HOME/promenade/<renderer>-<W>x<H>.json (or
+// ~/.cache/...). Makes the folders. Free with prom_free; NULL when there is no home.
+char *prom_cost_cache_path(const char *renderer, uint32_t width, uint32_t height);
+
+#endif

@@ -1,0 +1,19 @@
+// Keeps frames within the budget: corrects the prediction by the measured ratio and keeps a
+// fixed margin for noise. (The conformal guarantee takes this place later.)
+#ifndef PROM_TRAVERSE_GOVERNOR_H
+#define PROM_TRAVERSE_GOVERNOR_H
+
+typedef struct prom_governor {
+    double ratio;     // actual / predicted, smoothed over a few frames, within [1/4, 4]
+    double margin;    // part of the budget kept back
+    double select_ms; // smoothed selection time, charged to the budget
+} prom_governor;
+
+void prom_governor_init(prom_governor *governor, double margin);
+// What a selector may predict for a frame of budget_ms.
+double prom_governor_budget(const prom_governor *governor, double budget_ms);
+// After a frame: predicted (uncorrected), actual draw time, selection time, all in ms.
+void prom_governor_feed(prom_governor *governor, double predicted_ms, double draw_ms,
+                        double select_ms);
+
+#endif

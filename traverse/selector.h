@@ -1,0 +1,49 @@
+// Selectors: algorithms that return a cut within a budget, on one interface.
+#ifndef PROM_TRAVERSE_SELECTOR_H
+#define PROM_TRAVERSE_SELECTOR_H
+
+#include "metaobj/cut.h"
+#include "metaobj/model.h"
+#include "traverse/cost.h"
+#include "traverse/view.h"
+
+#include <stdbool.h>
+
+typedef struct prom_selection {
+    const prom_view *view;
+    const prom_cost_model *cost;
+    double budget_ms; // for prediction (fixed part included): what the cut may be predicted at
+    float distance_scale; // for `distance`: factor on its ranges; 0 means 1
+} prom_selection;
+
+typedef struct prom_selector prom_selector;
+
+typedef struct prom_selector_class {
+    const char *name;    // as on the command line
+    const char *summary; // one line
+    bool budgeted;       // heeds budget_ms
+    void *(*create)(const prom_model *model);
+    void (*destroy)(void *state);
+    void (*select)(void *state, const prom_selection *selection, prom_cut *cut);
+} prom_selector_class;
+
+// All selectors, in the order of the help text: meta, greedy, distance, full, coarsest.
+size_t prom_selector_count(void);
+const prom_selector_class *prom_selector_at(size_t i);
+
+// NULL with PROM_ERR_USAGE and the list of names when `name` is unknown. The model must outlive
+// the selector.
+prom_selector *prom_selector_create(const char *name, const prom_model *model,
+                                    prom_error *error);
+void prom_selector_destroy(prom_selector *selector);
+const prom_selector_class *prom_selector_class_of(const prom_selector *selector);
+// Fills *cut (its memory is reused). Never allocates once the cut has grown to its size.
+void prom_selector_run(prom_selector *selector, const prom_selection *selection,
+                       prom_cut *cut);
+
+// NULL if the cut holds exactly one entry on every root-to-leaf path whose leaf is in the
+// frustum, and each representation belongs to its node's prototype; else a literal.
+const char *prom_cut_check(const prom_model *model, const prom_view *view,
+                           const prom_cut *cut);
+
+#endif
