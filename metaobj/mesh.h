@@ -22,8 +22,8 @@ typedef struct prom_submesh {
     uint32_t material; // index into the model's materials, or PROM_NONE: vertex colour alone
 } prom_submesh;
 
-// A triangle list: index_count is a multiple of 3; submeshes cover it without overlap, in order.
-// Counter-clockwise triangles face the viewer.
+// A triangle list: index_count is a multiple of 3; submeshes cover it without overlap, in
+// order. Counter-clockwise triangles face the viewer.
 typedef struct prom_mesh {
     prom_vertex *vertices;
     uint32_t *indices;
@@ -41,6 +41,8 @@ prom_box prom_mesh_bounds(const prom_mesh *mesh);
 // NULL if indices are in range, submeshes consistent, positions finite and materials below
 // `material_count` or PROM_NONE; else a literal that says what is wrong.
 const char *prom_mesh_check(const prom_mesh *mesh, uint32_t material_count);
+// Hash of all that the mesh holds. Which corner of a triangle stands first does not count: the
+// container's codec may turn triangles (keeping their winding).
 uint64_t prom_mesh_hash(const prom_mesh *mesh, uint64_t seed);
 
 // A box of 12 triangles and 24 vertices around [center - half, center + half], faces in the

@@ -1,0 +1,181 @@
+// What a model must hold before anybody walks it. Everything that follows an index or trusts a
+// count rests on these checks, so they repeat no trust in where the model came from.
+#include "metaobj/model.h"
+
+#include "metaobj/texture.h"
+
+static bool finite_floats(const float *v, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (!isfinite(v[i])) return false;
+    return true;
+}
+
+static bool finite_doubles(const double *v, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (!isfinite(v[i])) return false;
+    return true;
+}
+
+static bool good_bounds(const float half[3], float radius)
+{
+    return half[0] >= 0 && half[1] >= 0 && half[2] >= 0 && radius >= 0 &&
+           finite_floats(half, 3) && isfinite(radius);
+}
+
+static const char *check_arrays(const prom_model *m)
+{
+    if (!m->tree_count || m->tree_count > m->node_count)
+        return "the tree has no root or more nodes than there are";
+    if (!m->parent || !m->first_child || !m->child_count || !m->prototype || !m->name ||
+        !m->placement || !m->center || !m->half || !m->radius)
+        return "a node array is missing";
+    if (m->prototype_count && (!m->prototypes || !m->coverage))
+        return "a prototype array is missing";
+    if (m->rep_count && (!m->reps || !m->accuracy)) return "a representation array is missing";
+    if ((m->share_count && !m->shares) || (m->material_count && !m->materials) ||
+        (m->mesh_count && !m->meshes) || (m->texture_count && !m->textures))
+        return "an array is missing";
+    if (!m->names || !m->names_bytes || m->names[0] || m->names[m->names_bytes - 1])
+        return "the names do not start with the empty name or do not end with a zero";
+    return NULL;
+}
+
+static const char *check_texture(const prom_texture_info *t)
+{
+    prom_texture whole = {t->kind, t->width, t->height, t->layers, t->levels, NULL};
+    return prom_texture_bytes(&whole) ? NULL : "a texture's kind or size is out of range";
+}
+
+static const char *check_material(const prom_model *m, const prom_material *material)
+{
+    if (!finite_floats(material->base_color, 4) || !isfinite(material->alpha_cutoff))
+        return "a material holds a number that is not finite";
+    if (material->alpha_mode > PROM_ALPHA_BLEND || material->double_sided > 1)
+        return "a material's alpha mode or sidedness is out of range";
+    if (material->texture == PROM_NONE) return NULL;
+    if (material->texture >= m->texture_count) return "a material's texture is out of range";
+    if (m->textures[material->texture].kind != PROM_TEXTURE_COLOR)
+        return "a material's texture is no colour texture";
+    return NULL;
+}
+
+static const char *check_rep(const prom_model *m, const prom_representation *r)
+{
+    if (r->kind >= PROM_REP_KIND_COUNT) return "a representation's kind is unknown";
+    if (r->shading >= PROM_SHADE_COUNT) return "a representation's shading is unknown";
+    if (r->mesh >= m->mesh_count) return "a representation's mesh is out of range";
+    if (r->texture != PROM_NONE && r->texture >= m->texture_count)
+        return "a representation's texture is out of range";
+    if (r->kind == PROM_REP_TEXTURED_BOX) {
+        if (r->texture == PROM_NONE) return "a textured box has no texture";
+        if (m->textures[r->texture].kind == PROM_TEXTURE_COLOR)
+            return "a textured box has no impostor texture";
+    }
+    if (!(r->error >= 0) || !isfinite(r->error)) return "a representation's error is no length";
+    if (!(r->max_size_px > 0)) return "a representation's largest size is not above 0";
+    if (!(r->near_k >= 0) || !isfinite(r->near_k))
+        return "a representation's near_k is not at least 0";
+    return NULL;
+}
+
+static bool has_mesh(const prom_model *m, const prom_prototype *p)
+{
+    for (uint32_t r = 0; r < p->rep_count; r++)
+        if (m->reps[p->first_rep + r].kind == PROM_REP_MESH) return true;
+    return false;
+}
+
+static const char *check_prototype(const prom_model *m, const prom_prototype *p, uint8_t *owned)
+{
+    if (p->first_rep > m->rep_count || p->rep_count > m->rep_count - p->first_rep)
+        return "a prototype's representations are out of range";
+    for (uint32_t r = 0; r < p->rep_count; r++)
+        if (owned[p->first_rep + r]++) return "a representation belongs to two prototypes";
+    if (!finite_floats(p->center, 3) || !good_bounds(p->half, p->radius))
+        return "a prototype's bounds are not finite or negative";
+    if (!(p->flags & PROM_PROTO_CLUSTER) != !p->child_count)
+        return "a prototype's cluster flag does not fit its child count";
+    if (!p->child_count) {
+        if (p->first_share != PROM_NONE) return "a leaf prototype has shares";
+        return has_mesh(m, p) ? NULL : "a leaf prototype has no mesh";
+    }
+    if (p->first_share > m->share_count || p->child_count > m->share_count - p->first_share)
+        return "a prototype's shares are out of range";
+    return NULL;
+}
+
+// `next_child` is where a breadth-first order puts the next children.
+static const char *check_links(const prom_model *m, uint32_t n, uint32_t *next_child)
+{
+    uint32_t parent = m->parent[n], count = m->child_count[n];
+    if (n == 0 || n >= m->tree_count) {
+        if (parent != PROM_NONE) return "the root or a background node has a parent";
+    } else if (parent >= n || n < m->first_child[parent] ||
+               n - m->first_child[parent] >= m->child_count[parent]) {
+        return "a node is not among its parent's children";
+    }
+    if (!count) return m->first_child[n] == PROM_NONE ? NULL : "a leaf has a first child";
+    if (n >= m->tree_count) return "a background node has children";
+    if (m->first_child[n] != *next_child) return "nodes are not in breadth-first order";
+    if (count > m->tree_count - *next_child) return "a node's children are out of range";
+    *next_child += count;
+    return NULL;
+}
+
+static const char *check_node(const prom_model *m, uint32_t n, uint32_t *next_child)
+{
+    const char *wrong = check_links(m, n, next_child);
+    if (wrong) return wrong;
+    if (m->prototype[n] >= m->prototype_count) return "a node's prototype is out of range";
+    if (m->prototypes[m->prototype[n]].child_count != m->child_count[n])
+        return "a node has not as many children as its prototype";
+    if (m->name[n] >= m->names_bytes) return "a node's name is out of range";
+    if (!finite_doubles(m->placement[n].origin, 3) || !finite_floats(m->placement[n].basis, 9))
+        return "a node's placement is not finite";
+    if (!finite_doubles(m->center[n], 3) || !good_bounds(m->half[n], m->radius[n]))
+        return "a node's bounds are not finite or negative";
+    return NULL;
+}
+
+static const char *check_prototypes(const prom_model *m, uint64_t *row)
+{
+    const char *wrong = NULL;
+    uint8_t *owned = prom_calloc(m->rep_count, 1);
+    for (*row = 0; *row < m->prototype_count; ++*row)
+        if ((wrong = check_prototype(m, &m->prototypes[*row], owned))) goto done;
+    for (*row = 0; *row < m->rep_count; ++*row)
+        if (!owned[*row]) {
+            wrong = "a representation belongs to no prototype";
+            goto done;
+        }
+done:
+    prom_free(owned);
+    return wrong;
+}
+
+const char *prom_model_check(const prom_model *model, uint64_t *row)
+{
+    const prom_model *m = model;
+    uint64_t unused;
+    if (!row) row = &unused;
+    *row = 0;
+    const char *wrong = check_arrays(m);
+    if (wrong) return wrong;
+    for (*row = 0; *row < m->mesh_count; ++*row)
+        if (m->meshes[*row].index_count % 3) return "a mesh's index count is no multiple of 3";
+    for (*row = 0; *row < m->texture_count; ++*row)
+        if ((wrong = check_texture(&m->textures[*row]))) return wrong;
+    for (*row = 0; *row < m->material_count; ++*row)
+        if ((wrong = check_material(m, &m->materials[*row]))) return wrong;
+    for (*row = 0; *row < m->rep_count; ++*row)
+        if ((wrong = check_rep(m, &m->reps[*row]))) return wrong;
+    if ((wrong = check_prototypes(m, row))) return wrong;
+    uint32_t next_child = 1;
+    for (*row = 0; *row < m->node_count; ++*row)
+        if ((wrong = check_node(m, (uint32_t)*row, &next_child))) return wrong;
+    *row = 0;
+    if (next_child != m->tree_count) return "a node of the tree has no parent";
+    return NULL;
+}
