@@ -1,0 +1,165 @@
+#include "builder/bake.h"
+
+#include "metaobj/base/alloc.h"
+#include "metaobj/base/threads.h"
+
+#define ATLAS_PX (PROM_VIEW_PX * PROM_DIR_GRID)
+_Static_assert(PROM_DIR_GRID == 6, "the six faces use the first row of the atlas");
+
+struct prom_baker {
+    prom_target *target;
+    prom_draw_list *list;
+    uint8_t *rgba; // read-back of the atlas
+    uint32_t *ids;
+};
+
+static const uint8_t nothing[4] = {0, 0, 0, 0};
+
+void prom_views_init(prom_views *views, bool with_ids)
+{
+    views->luminance = prom_alloc(PROM_DIRS, sizeof *views->luminance);
+    views->coverage = prom_alloc(PROM_DIRS, sizeof *views->coverage);
+    views->ids = with_ids ? prom_alloc(PROM_DIRS, sizeof *views->ids) : NULL;
+}
+
+void prom_views_finish(prom_views *views)
+{
+    prom_free(views->luminance);
+    prom_free(views->coverage);
+    prom_free(views->ids);
+    *views = (prom_views){0};
+}
+
+prom_baker *prom_baker_create(prom_renderer *renderer, prom_error *error)
+{
+    prom_baker *baker = prom_calloc(1, sizeof *baker);
+    baker->target = prom_target_create(ATLAS_PX, ATLAS_PX, true, error);
+    if (!baker->target) {
+        prom_baker_destroy(baker);
+        return NULL;
+    }
+    baker->list = prom_draw_list_create(renderer);
+    baker->rgba = prom_alloc((size_t)ATLAS_PX * ATLAS_PX, 4);
+    baker->ids = prom_alloc((size_t)ATLAS_PX * ATLAS_PX, sizeof *baker->ids);
+    return baker;
+}
+
+void prom_baker_destroy(prom_baker *baker)
+{
+    if (!baker) return;
+    prom_target_destroy(baker->target);
+    prom_draw_list_destroy(baker->list);
+    prom_free(baker->rgba);
+    prom_free(baker->ids);
+    prom_free(baker);
+}
+
+void prom_baker_set_subject(prom_baker *baker, const prom_draw_item *items, size_t count)
+{
+    prom_draw_list_reset(baker->list);
+    for (size_t i = 0; i < count; i++) prom_draw_list_add(baker->list, &items[i]);
+    prom_draw_list_prepare(baker->list);
+}
+
+// Clip coordinates from a frame: x and y over the half extents, z from 0 (far) to 1 (near).
+static void orthographic(const float right[3], const float up[3], const float out[3],
+                         float half_width, float half_height, float half_depth, mat4 m)
+{
+    glm_mat4_zero(m);
+    for (int c = 0; c < 3; c++) {
+        m[c][0] = right[c] / half_width;
+        m[c][1] = up[c] / half_height;
+        m[c][2] = 0.5f * out[c] / half_depth;
+    }
+    m[3][2] = 0.5f;
+    m[3][3] = 1.0f;
+}
+
+static void frame_of_direction(const float out[3], float right[3], float up[3])
+{
+    vec3 world_up = {0.0f, 1.0f, 0.0f};
+    if (fabsf(out[1]) > 0.99f) glm_vec3_copy((vec3){0.0f, 0.0f, -1.0f}, world_up);
+    glm_vec3_crossn(world_up, (float *)out, right);
+    glm_vec3_cross((float *)out, right, up);
+}
+
+typedef struct unpack_job {
+    const prom_baker *baker;
+    prom_views *views;
+} unpack_job;
+
+// Copies one view out of the atlas.
+static void unpack_view(void *user, size_t dir, unsigned thread)
+{
+    (void)thread;
+    const unpack_job *job = user;
+    uint32_t x0 = (uint32_t)dir % PROM_DIR_GRID * PROM_VIEW_PX;
+    uint32_t y0 = (uint32_t)dir / PROM_DIR_GRID * PROM_VIEW_PX;
+    float *luminance = job->views->luminance[dir], *coverage = job->views->coverage[dir];
+    for (uint32_t y = 0; y < PROM_VIEW_PX; y++) {
+        size_t from = (size_t)(y0 + y) * ATLAS_PX + x0, to = (size_t)y * PROM_VIEW_PX;
+        const uint8_t *p = job->baker->rgba + 4 * from;
+        for (uint32_t x = 0; x < PROM_VIEW_PX; x++, p += 4) {
+            bool covered = p[3] >= 128;
+            coverage[to + x] = covered ? 1.0f : 0.0f;
+            luminance[to + x] = covered ? 0.2126f * prom_srgb8_to_linear(p[0]) +
+                                              0.7152f * prom_srgb8_to_linear(p[1]) +
+                                              0.0722f * prom_srgb8_to_linear(p[2])
+                                        : 0.0f;
+        }
+        if (job->views->ids)
+            memcpy(job->views->ids[dir] + to, job->baker->ids + from,
+                   PROM_VIEW_PX * sizeof(uint32_t));
+    }
+}
+
+void prom_baker_take_views(prom_baker *baker, float radius, prom_views *views)
+{
+    prom_target_clear(baker->target, nothing);
+    for (uint32_t dir = 0; dir < PROM_DIRS; dir++) {
+        float out[3], right[3], up[3];
+        prom_direction_of_bin(dir, out);
+        frame_of_direction(out, right, up);
+        // The viewport counts from the bottom, the read-back from the top.
+        prom_pass pass = {
+            .x = dir % PROM_DIR_GRID * PROM_VIEW_PX,
+            .y = ATLAS_PX - (dir / PROM_DIR_GRID + 1) * PROM_VIEW_PX,
+            .width = PROM_VIEW_PX,
+            .height = PROM_VIEW_PX,
+            .output = PROM_OUTPUT_LIT,
+        };
+        orthographic(right, up, out, radius, radius, radius * 1.01f, pass.projection);
+        prom_draw_list_submit(baker->list, baker->target, &pass);
+    }
+    prom_target_read_rgba(baker->target, 0, 0, ATLAS_PX, ATLAS_PX, baker->rgba);
+    if (views->ids) prom_target_read_ids(baker->target, 0, 0, ATLAS_PX, ATLAS_PX, baker->ids);
+    unpack_job job = {.baker = baker, .views = views};
+    prom_parallel_for(PROM_DIRS, unpack_view, &job);
+}
+
+void prom_baker_take_faces(prom_baker *baker, const float half[3], prom_output output,
+                           uint32_t size_px, uint8_t *rgba)
+{
+    prom_target_clear(baker->target, nothing);
+    for (int face = 0; face < 6; face++) {
+        float right[3], up[3], out[3];
+        prom_box_face_axes(face, right, up, out);
+        float extent[3];
+        const float *axes[3] = {right, up, out};
+        for (int a = 0; a < 3; a++)
+            extent[a] = fabsf(axes[a][0]) * half[0] + fabsf(axes[a][1]) * half[1] +
+                        fabsf(axes[a][2]) * half[2];
+        prom_pass pass = {
+            .x = (uint32_t)face * PROM_VIEW_PX,
+            .y = ATLAS_PX - size_px,
+            .width = size_px,
+            .height = size_px,
+            .output = output,
+        };
+        orthographic(right, up, out, extent[0], extent[1], extent[2] * 1.01f, pass.projection);
+        prom_draw_list_submit(baker->list, baker->target, &pass);
+    }
+    for (uint32_t face = 0; face < 6; face++)
+        prom_target_read_rgba(baker->target, face * PROM_VIEW_PX, 0, size_px, size_px,
+                              rgba + (size_t)face * size_px * size_px * 4);
+}

@@ -1,0 +1,42 @@
+// Off-screen pictures of a prototype: its views from every direction bin, and its six sides.
+#ifndef PROM_BUILDER_BAKE_H
+#define PROM_BUILDER_BAKE_H
+
+#include "metaobj/base/status.h"
+#include "metaobj/view_bins.h"
+#include "render/renderer.h"
+
+#include <stdbool.h>
+
+// Pixels along a side of a view: the largest measured size.
+#define PROM_VIEW_PX 128
+#define PROM_VIEW_PIXELS (PROM_VIEW_PX * PROM_VIEW_PX)
+
+// Orthographic views in which the diameter of the subject's bounding sphere is PROM_VIEW_PX.
+typedef struct prom_views {
+    float (*luminance)[PROM_VIEW_PIXELS]; // per direction: linear, times coverage
+    float (*coverage)[PROM_VIEW_PIXELS];  // 0 or 1
+    uint32_t (*ids)[PROM_VIEW_PIXELS];    // of the items; PROM_NONE where nothing is
+} prom_views;
+
+void prom_views_init(prom_views *views, bool with_ids);
+void prom_views_finish(prom_views *views);
+
+typedef struct prom_baker prom_baker;
+
+prom_baker *prom_baker_create(prom_renderer *renderer, prom_error *error);
+void prom_baker_destroy(prom_baker *baker);
+
+// Sets what is pictured: items placed relative to the subject's centre, kept until the next
+// call.
+void prom_baker_set_subject(prom_baker *baker, const prom_draw_item *items, size_t count);
+
+// Fills views (ids only if views->ids) for a sphere of `radius` around the centre.
+void prom_baker_take_views(prom_baker *baker, float radius, prom_views *views);
+
+// The six sides of the box of half extents `half`, each size_px x size_px RGBA from the top, in
+// the face order and orientation of prom_mesh_init_box. size_px <= PROM_VIEW_PX.
+void prom_baker_take_faces(prom_baker *baker, const float half[3], prom_output output,
+                           uint32_t size_px, uint8_t *rgba);
+
+#endif

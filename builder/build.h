@@ -1,0 +1,100 @@
+// The state of a running build, handed from stage to stage (pipeline.c gives their order).
+#ifndef PROM_BUILDER_BUILD_H
+#define PROM_BUILDER_BUILD_H
+
+#include "builder/bake.h"
+#include "builder/measure.h"
+#include "builder/pipeline.h"
+#include "metaobj/container.h"
+
+#define PROM_LEVELS_MAX 8
+#define PROM_FACE_PX 64              // side of a stored impostor picture
+#define PROM_CLUSTER_TRIANGLES 2048u // of a cluster's fine mesh, at most
+
+// The meshes of a leaf's prototype.
+typedef struct prom_shape_build {
+    prom_mesh levels[PROM_LEVELS_MAX];
+    float errors[PROM_LEVELS_MAX];
+    uint32_t level_count;
+    uint32_t first_mesh; // container and renderer id of level 0; the others follow
+    prom_mesh merge;     // a level with its materials baked to colours, for cluster meshes
+    float merge_error;
+} prom_shape_build;
+
+// The meshes of a cluster's prototype: a fine and a coarse one.
+#define PROM_CLUSTER_LEVELS 2
+typedef struct prom_cluster_build {
+    prom_mesh levels[PROM_CLUSTER_LEVELS];
+    float errors[PROM_CLUSTER_LEVELS];
+    uint32_t level_count;
+} prom_cluster_build;
+
+typedef struct prom_build_state {
+    const prom_build_options *options;
+    prom_source source;
+    prom_objects objects;
+    prom_tree tree;
+    prom_texture *textures;       // of the source images
+    prom_shape_build *shapes;     // as objects.shapes
+    prom_cluster_build *clusters; // as tree.clusters
+    float mean_luminance;         // of the scene, linear
+    bool *boxed;                  // per prototype: gets a textured box within the byte budget
+
+    // What the model will hold. Prototypes: shapes, then clusters.
+    prom_model model; // its nodes, once placed; owns nothing else
+    prom_prototype *prototypes;
+    uint16_t (*coverage)[PROM_DIRS];
+    PROM_ARRAY(prom_representation) reps;
+    PROM_ARRAY(struct prom_accuracy_row { uint8_t a[PROM_DIRS][PROM_SIZES]; }) accuracy;
+    PROM_ARRAY(struct prom_share_row { uint16_t a[PROM_DIRS]; }) shares;
+    PROM_ARRAY(prom_mesh_info) mesh_infos;
+    PROM_ARRAY(prom_texture_info) texture_infos;
+
+    prom_writer *writer;
+    prom_context *context;
+    prom_renderer *renderer;
+    prom_baker *baker;
+    prom_measure *measure;
+    prom_views truth, views;
+} prom_build_state;
+
+// ---- stages, in this order (each in the file of its name)
+
+prom_status prom_stage_textures(prom_build_state *b, prom_error *error);
+// Weld, levels, baked colours: on all cores.
+prom_status prom_stage_levels(prom_build_state *b, prom_error *error);
+// Representations of leaves: upload, impostors, accuracy.
+prom_status prom_stage_leaves(prom_build_state *b, prom_error *error);
+// Merged meshes, impostors, accuracy and shares of clusters, upwards.
+prom_status prom_stage_clusters(prom_build_state *b, prom_error *error);
+// Nodes of the model from the tree and the leaves' prototypes; sets b->model and the bounds of
+// cluster prototypes. Called by the cluster stage.
+void prom_build_place_nodes(prom_build_state *b);
+// The tree and its tables into the container.
+prom_status prom_stage_model(prom_build_state *b, prom_error *error);
+
+// ---- shared by the stages
+
+// Adds a mesh or texture to the container and the renderer, under the same id.
+prom_status prom_build_add_mesh(prom_build_state *b, const prom_mesh *mesh, uint32_t *id,
+                                prom_error *error);
+prom_status prom_build_add_texture(prom_build_state *b, const prom_texture *texture,
+                                   uint32_t *id, prom_error *error);
+// Appends a representation to prototype `p`, which must be the last one that got any; its
+// accuracy row starts as all 255. Returns the representation's index.
+uint32_t prom_build_add_rep(prom_build_state *b, uint32_t p, const prom_representation *rep);
+// A mesh representation with its features; not yet measured.
+prom_representation prom_build_mesh_rep(const prom_build_state *b, const prom_mesh *mesh,
+                                        uint32_t mesh_id, uint32_t level, float error);
+// Takes views of the subject set in the baker and compares them with the truth set in measure:
+// fills the accuracy row of `rep` and, for meshes, near_k.
+void prom_build_measure_rep(prom_build_state *b, uint32_t rep, float radius);
+
+// Average-colour box and, if `textured`, textured box of the subject set in the baker (items
+// relative to the bounds' centre). lit: bake the light in (clusters). Each is added to
+// prototype `p` and measured.
+prom_status prom_build_add_boxes(prom_build_state *b, uint32_t p, const float center[3],
+                                 const float half[3], float radius, bool lit, bool textured,
+                                 prom_error *error);
+
+#endif

@@ -1,0 +1,65 @@
+// From a source scene to objects: what the leaves of the tree will be.
+#ifndef PROM_BUILDER_OBJECTS_H
+#define PROM_BUILDER_OBJECTS_H
+
+#include "builder/source.h"
+
+// Where an object goes.
+typedef enum prom_layer {
+    PROM_LAYER_OBJECT = 0,  // a thing: instances, clusters with impostors
+    PROM_LAYER_SURFACE = 1, // chunks of large connected surfaces: merged meshes, no impostors
+    PROM_LAYER_BLENDED = 2, // see-through: never inside a cluster's picture
+    PROM_LAYER_BACKDROP = 3,
+    PROM_LAYER_COUNT
+} prom_layer;
+
+// Geometry shared by instances: the future prototype of a leaf. In its own frame.
+typedef struct prom_shape {
+    prom_mesh mesh;        // submeshes by material
+    prom_layer layer;
+    bool lock_border;      // its open border meets a neighbour's: no level may move it
+    prom_box bounds;
+    uint32_t instances;
+} prom_shape;
+
+typedef struct prom_object {
+    uint32_t shape;
+    uint32_t name;         // offset into names
+    uint32_t group;        // index into groups, or PROM_NONE
+    prom_placement placement;
+} prom_object;
+
+// A repeated assembly: the source has several equal subtrees (same shapes, same placements up to
+// a translation); the tree builds one and instances the rest. Objects of the k-th member stand in
+// the same order as those of the first.
+typedef struct prom_group {
+    uint32_t kind;          // groups of one kind are equal up to translation
+    double origin[3];       // the translation
+    uint32_t first_object, object_count; // objects of a group stand together
+} prom_group;
+
+typedef struct prom_object_options {
+    uint32_t max_triangles;    // larger objects are split; 0: 4096
+    uint32_t min_triangles;    // unique neighbours smaller than this are gathered; 0: 256
+    double chunk_size;         // edge of a surface chunk in scene units; 0: from the layout
+} prom_object_options;
+
+typedef struct prom_objects {
+    PROM_ARRAY(prom_shape) shapes;
+    PROM_ARRAY(prom_object) objects;
+    PROM_ARRAY(prom_group) groups;
+    PROM_ARRAY(char) names; // starts with one zero: offset 0 is the empty name
+    prom_box layout;        // bounds of all objects but the backdrop (world)
+    // What was found, for `info`.
+    uint32_t split, gathered, chunks, backdrops, blended, instanced;
+} prom_objects;
+
+// Steps: flatten the hierarchy; instances share a shape (a non-uniform scale beyond 1.05 makes a
+// shape of its own); find the layout and the backdrops (beyond 3 times it); blended submeshes
+// become objects of their own; large surfaces become locked chunks; large objects are split by
+// connected component and then space; tiny unique neighbours are gathered.
+prom_status prom_objects_find(const prom_source *source, const prom_object_options *options,
+                              prom_objects *objects, prom_error *error);
+void prom_objects_finish(prom_objects *objects);
+
+#endif

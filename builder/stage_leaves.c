@@ -1,0 +1,228 @@
+// Leaves: mesh levels on all cores, then impostors and accuracy tables on the device.
+#include "builder/build.h"
+
+#include "builder/cluster_mesh.h"
+#include "builder/simplify.h"
+#include "builder/textures.h"
+#include "metaobj/base/log.h"
+#include "metaobj/base/threads.h"
+
+#define MIN_TRIANGLES 12u     // of a level; a box has as many
+#define MERGE_TRIANGLES 2048u // of the level that goes into cluster meshes
+#define BOXED_TRIANGLES 64u   // fewer, and a textured box saves nothing
+
+prom_status prom_stage_textures(prom_build_state *b, prom_error *error)
+{
+    size_t count = b->source.images.count;
+    b->textures = prom_calloc(count, sizeof *b->textures);
+    prom_textures_make(&b->source, b->textures);
+    for (size_t i = 0; i < count; i++) {
+        uint32_t id;
+        prom_status status = prom_build_add_texture(b, &b->textures[i], &id, error);
+        if (status) return status;
+    }
+    prom_renderer_set_materials(b->renderer, b->source.materials.data,
+                                (uint32_t)b->source.materials.count);
+    return PROM_OK;
+}
+
+typedef struct levels_job {
+    prom_build_state *b;
+    prom_progress progress;
+} levels_job;
+
+static void make_levels(void *user, size_t i, unsigned thread)
+{
+    (void)thread;
+    levels_job *job = user;
+    prom_shape *shape = &job->b->objects.shapes.data[i];
+    prom_shape_build *s = &job->b->shapes[i];
+    prom_mesh_weld(&shape->mesh, 0);
+    bool fixed = shape->layer == PROM_LAYER_BACKDROP || shape->layer == PROM_LAYER_BLENDED;
+    s->level_count = prom_simplify_levels(&shape->mesh, shape->lock_border, MIN_TRIANGLES,
+                                          fixed ? 1 : PROM_LEVELS_MAX, s->levels, s->errors);
+    prom_mesh_finish(&shape->mesh); // level 0 holds it now
+    uint32_t merge = 0;
+    while (merge + 1 < s->level_count && s->levels[merge].index_count / 3 > MERGE_TRIANGLES)
+        merge++;
+    if (!fixed)
+        prom_mesh_bake_colors(&s->levels[merge], job->b->source.materials.data,
+                              job->b->textures, &s->merge);
+    s->merge_error = s->errors[merge];
+    prom_progress_step(&job->progress, 1);
+}
+
+// Area-weighted mean luminance of what clusters will merge: the scene's own background.
+static float mean_luminance(const prom_build_state *b)
+{
+    double sum = 0, area = 0;
+    for (size_t i = 0; i < b->objects.shapes.count; i++) {
+        const prom_mesh *m = &b->shapes[i].merge;
+        double weight = b->objects.shapes.data[i].instances;
+        for (uint32_t t = 0; t + 2 < m->index_count; t += 3) {
+            const prom_vertex *v[3];
+            for (int k = 0; k < 3; k++) v[k] = &m->vertices[m->indices[t + k]];
+            vec3 e1, e2, n;
+            glm_vec3_sub((float *)v[1]->position, (float *)v[0]->position, e1);
+            glm_vec3_sub((float *)v[2]->position, (float *)v[0]->position, e2);
+            glm_vec3_cross(e1, e2, n);
+            double a = weight * glm_vec3_norm(n);
+            const uint8_t *c = v[0]->color;
+            sum += a * (0.2126f * prom_srgb8_to_linear(c[0]) +
+                        0.7152f * prom_srgb8_to_linear(c[1]) +
+                        0.0722f * prom_srgb8_to_linear(c[2]));
+            area += a;
+        }
+    }
+    return area > 0 ? (float)(sum / area) : 0.2f;
+}
+
+prom_status prom_stage_levels(prom_build_state *b, prom_error *error)
+{
+    (void)error;
+    size_t count = b->objects.shapes.count;
+    b->shapes = prom_calloc(count, sizeof *b->shapes);
+    levels_job job = {.b = b};
+    prom_progress_begin(&job.progress, "levels", count);
+    prom_parallel_for(count, make_levels, &job);
+    prom_progress_end(&job.progress);
+    b->mean_luminance = mean_luminance(b);
+    return PROM_OK;
+}
+
+// The sphere around the bounds' centre that holds every vertex.
+static float radius_around(const prom_mesh *mesh, const float center[3])
+{
+    float r2 = 0;
+    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+        r2 = fmaxf(r2, glm_vec3_distance2(mesh->vertices[i].position, (float *)center));
+    return fmaxf(sqrtf(r2), 1e-6f);
+}
+
+static uint32_t flags_of_layer(prom_layer layer)
+{
+    static const uint32_t flags[PROM_LAYER_COUNT] = {
+        [PROM_LAYER_SURFACE] = PROM_PROTO_SURFACE,
+        [PROM_LAYER_BLENDED] = PROM_PROTO_BLENDED,
+        [PROM_LAYER_BACKDROP] = PROM_PROTO_BACKDROP,
+    };
+    return flags[layer];
+}
+
+static prom_draw_item item_around(uint32_t mesh, const float center[3])
+{
+    return (prom_draw_item){.mesh = mesh,
+                            .texture = PROM_NONE,
+                            .origin = {-center[0], -center[1], -center[2]},
+                            .basis = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+}
+
+static prom_status add_leaf(prom_build_state *b, uint32_t p, prom_error *error)
+{
+    const prom_shape *shape = &b->objects.shapes.data[p];
+    prom_shape_build *s = &b->shapes[p];
+    prom_prototype *proto = &b->prototypes[p];
+    proto->flags = flags_of_layer(shape->layer);
+    proto->first_share = PROM_NONE;
+    proto->triangles = s->levels[0].index_count / 3;
+    prom_box bounds = prom_mesh_bounds(&s->levels[0]);
+    prom_box_center(&bounds, proto->center);
+    prom_box_half(&bounds, proto->half);
+    proto->radius = radius_around(&s->levels[0], proto->center);
+
+    for (uint32_t l = 0; l < s->level_count; l++) {
+        uint32_t id;
+        prom_status status = prom_build_add_mesh(b, &s->levels[l], &id, error);
+        if (status) return status;
+        if (l == 0) s->first_mesh = id;
+        prom_representation rep = prom_build_mesh_rep(b, &s->levels[l], id, l, s->errors[l]);
+        uint32_t r = prom_build_add_rep(b, p, &rep);
+        prom_draw_item item = item_around(id, proto->center);
+        if (shape->layer == PROM_LAYER_BACKDROP) continue;
+        prom_baker_set_subject(b->baker, &item, 1);
+        if (l == 0) {
+            prom_baker_take_views(b->baker, proto->radius, &b->truth);
+            prom_measure_set_truth(b->measure, &b->truth, b->coverage[p]);
+        } else {
+            prom_build_measure_rep(b, r, proto->radius);
+        }
+    }
+    uint32_t cheapest = s->levels[s->level_count - 1].index_count / 3;
+    if (shape->layer != PROM_LAYER_OBJECT || cheapest <= MIN_TRIANGLES) {
+        // A box would cost as much as the last level and show less; unless that level's
+        // materials make it many draws.
+        if (shape->layer != PROM_LAYER_OBJECT ||
+            s->levels[s->level_count - 1].submesh_count < 2)
+            return PROM_OK;
+    }
+    prom_draw_item item = item_around(s->first_mesh, proto->center);
+    prom_baker_set_subject(b->baker, &item, 1);
+    return prom_build_add_boxes(b, p, proto->center, proto->half, proto->radius, false,
+                                b->boxed[p], error);
+}
+
+typedef struct candidate {
+    double value;   // triangles replaced per byte
+    uint32_t index; // shapes, then clusters
+} candidate;
+
+static int by_value(const void *a, const void *b)
+{
+    const candidate *x = a, *y = b;
+    if (x->value != y->value) return x->value > y->value ? -1 : 1;
+    return (x->index > y->index) - (x->index < y->index);
+}
+
+// Which prototypes get textured boxes: those that replace most triangles per byte, within the
+// byte budget of the device.
+static void plan_boxes(prom_build_state *b)
+{
+    const double face_bytes = PROM_FACE_PX * PROM_FACE_PX * 4.0 * 4.0 / 3.0; // with mips
+    const double shape_bytes = 12 * face_bytes, cluster_bytes = 6 * face_bytes;
+    PROM_ARRAY(candidate) list = {0};
+    size_t shape_count = b->objects.shapes.count, cluster_count = b->tree.clusters.count;
+    b->boxed = prom_calloc(shape_count + cluster_count, sizeof *b->boxed);
+    for (size_t i = 0; i < shape_count; i++) {
+        const prom_shape *s = &b->objects.shapes.data[i];
+        uint32_t triangles = b->shapes[i].levels[0].index_count / 3;
+        if (s->layer == PROM_LAYER_OBJECT && triangles >= BOXED_TRIANGLES)
+            prom_array_push(&list, (candidate){(double)triangles * s->instances / shape_bytes,
+                                               (uint32_t)i});
+    }
+    for (size_t i = 0; i < cluster_count; i++) {
+        const prom_tree_cluster *c = &b->tree.clusters.data[i];
+        if (c->layer == PROM_LAYER_OBJECT && !c->mixed) // its own mesh is what a box replaces
+            prom_array_push(&list, (candidate){(double)PROM_CLUSTER_TRIANGLES * c->instances /
+                                                   cluster_bytes,
+                                               (uint32_t)(shape_count + i)});
+    }
+    if (list.count) qsort(list.data, list.count, sizeof *list.data, by_value);
+    double left = (b->options->texture_mb ? b->options->texture_mb : 256) * 1048576.0;
+    size_t refused = 0;
+    for (size_t i = 0; i < list.count; i++) {
+        double bytes = list.data[i].index < shape_count ? shape_bytes : cluster_bytes;
+        bool fits = bytes <= left;
+        if (fits) left -= bytes;
+        refused += !fits;
+        b->boxed[list.data[i].index] = fits;
+    }
+    if (refused)
+        prom_log(PROM_LOG_INFO,
+                 "textured boxes: %zu of %zu do not fit --texture-mb; raise it to keep them",
+                 refused, list.count);
+    prom_array_finish(&list);
+}
+
+prom_status prom_stage_leaves(prom_build_state *b, prom_error *error)
+{
+    plan_boxes(b);
+    prom_progress progress;
+    prom_progress_begin(&progress, "leaves", b->objects.shapes.count);
+    for (uint32_t p = 0; p < b->objects.shapes.count; p++) {
+        prom_status status = add_leaf(b, p, error);
+        if (status) return status;
+        prom_progress_step(&progress, 1);
+    }
+    prom_progress_end(&progress);
+    return PROM_OK;
+}
