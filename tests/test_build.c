@@ -1,0 +1,197 @@
+// LINK: prom_builder prom_render prom_traverse prom_benefit prom_metaobj
+#include "builder/pipeline.h"
+
+#include "builder/bake.h"
+#include "builder/measure.h"
+#include "metaobj/base/log.h"
+#include "metaobj/container.h"
+#include "traverse/selector.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+// A street of boxes: enough things for several clusters, one of them instanced by name only.
+static void write_scene(const char *path)
+{
+    FILE *f = fopen(path, "w");
+    assert_non_null(f);
+    fputs("mtllib missing.mtl\n", f);
+    int base = 1;
+    for (int i = 0; i < 60; i++) {
+        double x = i % 10 * 8.0, z = i / 10 * 8.0, h = 2 + i % 5;
+        fprintf(f, "o house_%d\n", i);
+        for (int v = 0; v < 8; v++)
+            fprintf(f, "v %g %g %g\n", x + (v & 1 ? 3 : 0), v & 2 ? h : 0.0,
+                    z + (v & 4 ? 3 : 0));
+        static const int quads[6][4] = {{1, 3, 4, 2}, {5, 6, 8, 7}, {1, 2, 6, 5},
+                                        {3, 7, 8, 4}, {1, 5, 7, 3}, {2, 4, 8, 6}};
+        for (int q = 0; q < 6; q++) {
+            fputs("f", f);
+            for (int k = 0; k < 4; k++) fprintf(f, " %d", base + quads[q][k] - 1);
+            fputs("\n", f);
+        }
+        base += 8;
+    }
+    fclose(f);
+}
+
+static bool have_gl(void)
+{
+    prom_error error;
+    prom_context *context = prom_context_create_headless(&error);
+    if (!context) print_message("skipped: %s\n", error.text);
+    prom_context_destroy(context);
+    return context != NULL;
+}
+
+static void same_input_gives_same_content(void **state)
+{
+    (void)state;
+    if (!have_gl()) skip();
+    write_scene("build_scene.obj");
+    prom_build_options options = {.objects = {.min_triangles = 24}};
+    uint64_t hashes[2];
+    prom_error error = {0};
+    for (int i = 0; i < 2; i++) {
+        prom_build_report report;
+        prom_status status =
+            prom_build("build_scene.obj", "build_scene.prom", &options, &report, &error);
+        if (status) fail_msg("%s", error.text);
+        assert_int_equal(report.source_triangles, 60 * 12);
+        assert_true(report.nodes > report.objects);
+        assert_true(report.max_children <= 16);
+        prom_container *c = prom_container_open("build_scene.prom", &error);
+        assert_non_null(c);
+        assert_int_equal(prom_container_content_hash(c, &hashes[i], &error), PROM_OK);
+        prom_container_close(c);
+    }
+    assert_int_equal(hashes[0], hashes[1]);
+    assert_int_not_equal(access("build_scene.prom.part", F_OK), 0);
+}
+
+// The tables of a built model: full detail is exact, shares sum to one, nothing is accurate
+// that shows nothing.
+static void tables_of_a_built_model_hold(void **state)
+{
+    (void)state;
+    if (!have_gl()) skip();
+    write_scene("tables_scene.obj");
+    prom_build_options options = {.objects = {.min_triangles = 12}};
+    prom_error error = {0};
+    assert_int_equal(
+        prom_build("tables_scene.obj", "tables_scene.prom", &options, NULL, &error), PROM_OK);
+    prom_container *c = prom_container_open("tables_scene.prom", &error);
+    assert_non_null(c);
+    prom_model m = {0};
+    assert_int_equal(prom_container_load_model(c, &m, &error), PROM_OK);
+    uint32_t clusters = 0;
+    for (uint32_t p = 0; p < m.prototype_count; p++) {
+        const prom_prototype *proto = &m.prototypes[p];
+        for (uint32_t d = 0; d < PROM_DIRS; d++) {
+            assert_true(m.coverage[p][d] > 0);
+            if (!(proto->flags & PROM_PROTO_CLUSTER)) {
+                for (uint32_t s = 0; s < PROM_SIZES; s++)
+                    assert_int_equal(m.accuracy[proto->first_rep][d][s], 255);
+                continue;
+            }
+            uint32_t sum = 0;
+            for (uint32_t k = 0; k < proto->child_count; k++)
+                sum += m.shares[proto->first_share + k][d];
+            assert_in_range(sum, 65535 - proto->child_count, 65535 + proto->child_count);
+        }
+        clusters += (proto->flags & PROM_PROTO_CLUSTER) != 0;
+        for (uint32_t r = proto->first_rep; r < proto->first_rep + proto->rep_count; r++)
+            if (m.reps[r].kind != PROM_REP_MESH)
+                assert_float_equal(m.reps[r].max_size_px, PROM_SIZE_MAX_PX, 0);
+    }
+    assert_true(clusters >= 4);
+    prom_model_finish(&m);
+    prom_container_close(c);
+}
+
+static void bad_input_leaves_nothing(void **state)
+{
+    (void)state;
+    static const char *const scenes[] = {"no_such_scene.obj", "garbage.glb"};
+    FILE *f = fopen("garbage.glb", "w");
+    assert_non_null(f);
+    fputs("glTF is not this", f);
+    fclose(f);
+    for (size_t i = 0; i < 2; i++) {
+        prom_build_options options = {0};
+        prom_error error = {0};
+        assert_int_equal(prom_build(scenes[i], "bad.prom", &options, NULL, &error),
+                         PROM_ERR_INPUT);
+        assert_non_null(strstr(error.text, scenes[i]));
+        assert_int_not_equal(access("bad.prom", F_OK), 0);
+        assert_int_not_equal(access("bad.prom.part", F_OK), 0);
+    }
+}
+
+// Synthetic views: a disc in every direction.
+static void draw_disc(prom_views *views, float radius_px, float luminance)
+{
+    for (uint32_t d = 0; d < PROM_DIRS; d++)
+        for (int y = 0; y < PROM_VIEW_PX; y++)
+            for (int x = 0; x < PROM_VIEW_PX; x++) {
+                float dx = (float)x - 63.5f, dy = (float)y - 63.5f;
+                size_t i = (size_t)y * PROM_VIEW_PX + (size_t)x;
+                bool in = dx * dx + dy * dy < radius_px * radius_px;
+                views->coverage[d][i] = in ? 1.0f : 0.0f;
+                views->luminance[d][i] = in ? luminance : 0.0f;
+                if (views->ids) views->ids[d][i] = in ? (x < 64 ? 0 : 1) : PROM_NONE;
+            }
+}
+
+static void accuracy_is_one_for_equal_and_falls_with_difference(void **state)
+{
+    (void)state;
+    prom_views truth, other;
+    prom_views_init(&truth, true);
+    prom_views_init(&other, false);
+    prom_measure *m = prom_measure_create(0.2f);
+    uint16_t coverage[PROM_DIRS];
+    static uint8_t equal[PROM_DIRS][PROM_SIZES], near[PROM_DIRS][PROM_SIZES],
+        far[PROM_DIRS][PROM_SIZES];
+    draw_disc(&truth, 40, 0.5f);
+    prom_measure_set_truth(m, &truth, coverage);
+    draw_disc(&other, 40, 0.5f);
+    prom_measure_compare(m, &other, equal);
+    draw_disc(&other, 38, 0.45f);
+    prom_measure_compare(m, &other, near);
+    draw_disc(&other, 20, 0.1f);
+    prom_measure_compare(m, &other, far);
+    for (uint32_t d = 0; d < PROM_DIRS; d++) {
+        double share = 40.0 * 40.0 / (64.0 * 64.0);
+        assert_true(fabs(coverage[d] / 65535.0 - share) < 0.01);
+        for (uint32_t s = 0; s < PROM_SIZES; s++) {
+            assert_int_equal(equal[d][s], 255);
+            assert_true(near[d][s] < 255);
+            assert_true(far[d][s] < near[d][s]);
+        }
+    }
+    uint16_t shares[2][PROM_DIRS];
+    prom_measure_shares(&truth, 2, shares);
+    assert_in_range(shares[0][7] + shares[1][7], 65534, 65536);
+    assert_in_range(shares[0][7], 32700, 32835);
+    prom_measure_destroy(m);
+    prom_views_finish(&truth);
+    prom_views_finish(&other);
+}
+
+int main(void)
+{
+    prom_log_set_level(PROM_LOG_WARNING);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(accuracy_is_one_for_equal_and_falls_with_difference),
+        cmocka_unit_test(same_input_gives_same_content),
+        cmocka_unit_test(tables_of_a_built_model_hold),
+        cmocka_unit_test(bad_input_leaves_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
