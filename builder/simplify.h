@@ -10,15 +10,15 @@
 
 typedef struct prom_simplify_options {
     uint32_t target_triangles;
-    float max_error;    // object units; 0: no limit
-    bool lock_border;   // open borders stay exactly
-    bool sloppy;        // clusters vertices regardless of topology; not with lock_border
+    float max_error;  // object units; 0: no limit
+    bool lock_border; // open borders stay exactly
+    bool sloppy;      // clusters vertices regardless of topology; not with lock_border
 } prom_simplify_options;
 
-// Simplifies submesh by submesh in proportion (never below 1 triangle where there was one, except
-// that sloppy may drop specks), removes unused vertices and optimises for the vertex cache.
-// *error gets the greatest object-space deviation (absolute; quadric based, an estimate). Returns false and leaves
-// *out empty when the result would not be smaller.
+// Simplifies submesh by submesh in proportion (never below 1 triangle where there was one,
+// except that sloppy may drop specks), removes unused vertices and optimises for the vertex
+// cache. *error gets the greatest object-space deviation (absolute; quadric based, an
+// estimate). Returns false and leaves *out empty when the result would not be smaller.
 bool prom_simplify(const prom_mesh *mesh, const prom_simplify_options *options, prom_mesh *out,
                    float *error);
 

@@ -26,9 +26,9 @@ typedef struct prom_work {
     prom_index_array indices;   // the mesh's front faces
     uint32_t base_count;
     uint32_t submesh_count;
-    uint32_t *materials;  // per submesh
-    uint32_t triangles;   // with back sides
-    float diagonal;       // of the bounds
+    uint32_t *materials; // per submesh
+    uint32_t triangles;  // with back sides
+    float diagonal;      // of the bounds
 } prom_work;
 
 // Welds vertices equal in all attributes and drops triangles that are degenerate, not finite or
