@@ -1,6 +1,6 @@
-// The subcommands of `promenade`. Each parses its own options (argp; a wrong one ends the program
-// with exit code 1) and returns a prom_status, which is the exit code; on failure *error holds
-// the one line for the user.
+// The subcommands of `promenade`. Each parses its own options (argp; a wrong one ends the
+// program with exit code 1) and returns a prom_status, which is the exit code; on failure
+// *error holds the one line for the user.
 #ifndef PROM_APP_COMMAND_H
 #define PROM_APP_COMMAND_H
 

@@ -9,14 +9,25 @@
 const char *argp_program_version = "promenade " PROM_VERSION;
 
 static const prom_command commands[] = {
-    {NULL, NULL, NULL, NULL},
+    {"build", "SCENE -o X.prom", "build a model from a scene", prom_command_build},
+    {"info", "X.prom", "tell what a model holds", prom_command_info},
+    {"shot", "X.prom -o A.png", "draw one picture", prom_command_shot},
+    {"bench", "X.prom", "walk a path within a time per frame", prom_command_bench},
+    {"calibrate", "", "measure what drawing costs here", prom_command_calibrate},
+    {"scene", "city|tile", "make a scene", prom_command_scene},
 };
 
 int main(int argc, char **argv)
 {
     argp_err_exit_status = PROM_ERR_USAGE;
     prom_error error = {0};
-    prom_status status = prom_command_dispatch("promenade", commands, 0, argc, argv, &error);
+    prom_status status = prom_command_dispatch(
+        "promenade", commands, sizeof commands / sizeof *commands, argc, argv, &error);
     if (status != PROM_OK) prom_log(PROM_LOG_ERROR, "%s", error.text);
+    // A full disk or a closed pipe shows only now.
+    if (fflush(stdout) != 0 && status == PROM_OK) {
+        prom_log(PROM_LOG_ERROR, "stdout: cannot be written");
+        status = PROM_ERR_OUTPUT;
+    }
     return status;
 }

@@ -1,0 +1,85 @@
+#include "app/calibration.h"
+
+#include "metaobj/base/log.h"
+#include "render/calibrate.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+prom_status prom_calibration_run(prom_context *context, prom_renderer *renderer,
+                                 const uint32_t size_px[2], int effort, prom_cost_model *model,
+                                 prom_cost_samples *samples, bool *queries, prom_error *error)
+{
+    prom_cost_samples own = {0};
+    prom_cost_samples *all = samples ? samples : &own;
+    prom_timer *timer = prom_timer_create(renderer);
+    if (queries) *queries = prom_timer_uses_queries(timer);
+    prom_status status =
+        prom_calibrate_run(renderer, timer, size_px[0], size_px[1], effort, all, error);
+    if (!status) status = prom_cost_fit(all->data, all->count, model, error);
+    if (!status)
+        snprintf(model->renderer, sizeof model->renderer, "%s", prom_context_renderer(context));
+    prom_timer_destroy(timer);
+    prom_array_finish(&own);
+    return status;
+}
+
+// The model's field may hold a shortened name.
+static bool same_device(const prom_cost_model *model, const char *renderer)
+{
+    return !strncmp(model->renderer, renderer, sizeof model->renderer - 1);
+}
+
+static prom_status load_profile(const char *profile, const char *renderer,
+                                prom_cost_model *model, prom_error *error)
+{
+    prom_status status = prom_cost_load(profile, model, error);
+    if (!status && !same_device(model, renderer))
+        prom_log(PROM_LOG_WARNING, "%s: was measured on `%s`, this is `%s`; times may be off",
+                 profile, model->renderer, renderer);
+    return status;
+}
+
+static bool load_cached(const char *path, const char *renderer, prom_cost_model *model)
+{
+    if (!path || access(path, F_OK) != 0) return false;
+    prom_error error = {0};
+    if (prom_cost_load(path, model, &error) == PROM_OK && same_device(model, renderer))
+        return true;
+    if (error.status) prom_log(PROM_LOG_WARNING, "%s; measuring the device again", error.text);
+    return false;
+}
+
+static prom_status measure_and_keep(prom_context *context, prom_renderer *renderer,
+                                    const uint32_t size_px[2], const char *path,
+                                    prom_cost_model *model, prom_error *error)
+{
+    prom_log(PROM_LOG_INFO, "no cost profile yet for %s at %ux%u: measuring the device once",
+             prom_context_renderer(context), size_px[0], size_px[1]);
+    prom_status status =
+        prom_calibration_run(context, renderer, size_px, 1, model, NULL, NULL, error);
+    if (status) return status;
+    prom_error unkept = {0};
+    if (!path)
+        prom_log(PROM_LOG_INFO, "there is no home folder to keep the profile in");
+    else if (prom_cost_save(model, path, &unkept))
+        prom_log(PROM_LOG_WARNING, "%s", unkept.text);
+    else
+        prom_log(PROM_LOG_INFO, "kept in %s", path);
+    return PROM_OK;
+}
+
+prom_status prom_calibration_get(prom_context *context, prom_renderer *renderer,
+                                 const char *profile, const uint32_t size_px[2],
+                                 prom_cost_model *model, prom_error *error)
+{
+    const char *name = prom_context_renderer(context);
+    if (profile) return load_profile(profile, name, model, error);
+    char *path = prom_cost_cache_path(name, size_px[0], size_px[1]);
+    prom_status status = PROM_OK;
+    if (!load_cached(path, name, model))
+        status = measure_and_keep(context, renderer, size_px, path, model, error);
+    prom_free(path);
+    return status;
+}

@@ -1,0 +1,156 @@
+// promenade bench: walks a path within a budget and reports every frame.
+#include "app/bench_report.h"
+#include "app/command.h"
+#include "app/output.h"
+
+#include "metaobj/base/log.h"
+
+#define DEFAULT_BUDGET_MS 33.0
+#define AUTO_FRAMES 300
+
+typedef struct bench_options {
+    prom_view_options view;
+    prom_loop_options loop;
+    const char *model, *report, *csv;
+} bench_options;
+
+enum {
+    KEY_FRAMES = 0x1000,
+    KEY_WARMUP,
+    KEY_REPORT,
+    KEY_CSV,
+    KEY_KEEP,
+    KEY_EVERY,
+    KEY_HOLES,
+};
+
+static const struct argp_option options[] = {
+    {"frames", KEY_FRAMES, "N", 0,
+     "Frames to walk; past its end the path is walked to and fro (the path's length)", 0},
+    {"warmup", KEY_WARMUP, "N", 0, "Frames drawn before and not reported (30)", 0},
+    {"report", KEY_REPORT, "FILE", 0, "Write a report as JSON", 1},
+    {"csv", KEY_CSV, "FILE", 0, "Write one row a frame", 1},
+    {"keep-frames", KEY_KEEP, "DIR", 0, "Write pictures of frames into this folder", 1},
+    {"every", KEY_EVERY, "K", 0, "With --keep-frames: of every K-th frame (30)", 1},
+    {"check-holes", KEY_HOLES, "N", 0,
+     "On N frames also draw full detail and report where it covers the background and the cut "
+     "does not",
+     1},
+    {0},
+};
+
+static error_t parse(int key, char *text, struct argp_state *state)
+{
+    bench_options *o = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[1] = &o->view;
+        break;
+    case KEY_FRAMES:
+        o->loop.frames = (uint32_t)prom_option_whole(state, "--frames", text, 1, 10000000);
+        break;
+    case KEY_WARMUP:
+        o->loop.warmup = (uint32_t)prom_option_whole(state, "--warmup", text, 0, 100000);
+        break;
+    case KEY_REPORT:
+        o->report = text;
+        break;
+    case KEY_CSV:
+        o->csv = text;
+        break;
+    case KEY_KEEP:
+        o->loop.keep_folder = text;
+        break;
+    case KEY_EVERY:
+        o->loop.keep_every = (uint32_t)prom_option_whole(state, "--every", text, 1, 10000000);
+        break;
+    case KEY_HOLES:
+        o->loop.check_holes =
+            (uint32_t)prom_option_whole(state, "--check-holes", text, 0, 100000);
+        break;
+    case ARGP_KEY_ARG:
+        prom_option_argument(state, text, &o->model);
+        break;
+    case ARGP_KEY_END:
+        prom_option_require(state, "the model (a .prom file)", o->model);
+        break;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+    return 0;
+}
+
+static const struct argp_child children[] = {
+    {&prom_argp_log, 0, NULL, 0},
+    {&prom_argp_view, 0, NULL, 0},
+    {0},
+};
+
+static const struct argp argp = {
+    .options = options,
+    .parser = parse,
+    .args_doc = "X.prom",
+    .doc =
+        "Walk a path through a model within a time per frame, and report it.\v"
+        "The selector is `greedy` and the budget 33 ms unless given. A frame's time runs from "
+        "its start to the finished image; a frame over the budget is a miss.",
+    .children = children,
+};
+
+static void warn_infeasible(const bench_options *o, const prom_loop_result *result)
+{
+    if (!result->infeasible_frames) return;
+    prom_log(PROM_LOG_WARNING,
+             "budget %g ms: in %u of %zu frames even the cheapest cut is predicted to take "
+             "longer; %.1f ms would do",
+             o->loop.budget_ms, result->infeasible_frames, result->frames.count,
+             result->least_budget_ms);
+}
+
+static prom_status write_reports(const bench_options *o, const prom_run_facts *facts,
+                                 prom_error *error)
+{
+    prom_status status = PROM_OK;
+    if (o->report) status = prom_output_write_json(o->report, prom_bench_json(facts), error);
+    if (!status && o->csv)
+        status = prom_bench_write_csv(o->csv, &o->loop, facts->result, error);
+    return status;
+}
+
+static prom_status run_loop(bench_options *o, prom_session *session, prom_error *error)
+{
+    if (!o->loop.frames) o->loop.frames = (uint32_t)session->path.keys.count;
+    prom_loop_result result = {0};
+    prom_status status = PROM_OK;
+    if (o->loop.keep_folder) status = prom_output_make_folder(o->loop.keep_folder, error);
+    if (!status) status = prom_frame_loop_run(session, &o->loop, &result, error);
+    if (!status) {
+        prom_run_facts facts = {session, &o->loop, &result, o->model,
+                                o->view.path ? o->view.path : "auto"};
+        warn_infeasible(o, &result);
+        prom_bench_print(&facts);
+        status = write_reports(o, &facts, error);
+    }
+    prom_loop_result_finish(&result);
+    return status;
+}
+
+prom_status prom_command_bench(int argc, char **argv, prom_error *error)
+{
+    bench_options o = {.view = prom_view_options_default,
+                       .loop = {.warmup = 30, .keep_every = 30}};
+    argp_parse(&argp, argc, argv, 0, NULL, &o);
+    o.loop.selector = o.view.selector ? o.view.selector : "greedy";
+    o.loop.budget_ms = o.view.budget_ms > 0 ? o.view.budget_ms : DEFAULT_BUDGET_MS;
+    o.loop.distance_scale = o.view.distance_scale;
+    prom_status status = prom_output_check(o.report, error);
+    if (!status) status = prom_output_check(o.csv, error);
+    if (status) return status;
+    prom_session session;
+    status = prom_session_open(&session, o.model, &o.view, true,
+                               o.loop.frames ? o.loop.frames : AUTO_FRAMES, error);
+    if (status) return status;
+    status = run_loop(&o, &session, error);
+    prom_session_close(&session);
+    return status;
+}

@@ -1,0 +1,235 @@
+// promenade build: from a scene file to a model.
+#include "app/command.h"
+#include "app/options.h"
+#include "app/output.h"
+
+#include "builder/pipeline.h"
+#include "metaobj/base/clock.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+typedef struct build_options {
+    prom_build_options build;
+    const char *scene, *output;
+} build_options;
+
+enum {
+    KEY_TEXTURE_MB = 0x1000,
+    KEY_OCTREE,
+    KEY_DIVISIONS,
+    KEY_GROUP_RADIUS,
+    KEY_MAX_CHILDREN,
+    KEY_MAX_OBJECT,
+    KEY_MIN_OBJECT,
+    KEY_CHUNK_SIZE,
+    KEY_MAX_TEXTURE,
+    KEY_IMPORT_MEMORY,
+    KEY_IMPORT_TIME,
+    KEY_PROFILE,
+};
+
+static const struct argp_option options[] = {
+    {"output", 'o', "FILE", 0, "The model to write (X.prom)", -1},
+    {0, 0, 0, 0, "Import:", 1},
+    {"max-texture-px", KEY_MAX_TEXTURE, "PX", 0, "Reduce pictures to this side (1024)", 1},
+    {"import-memory-mb", KEY_IMPORT_MEMORY, "MB", 0,
+     "Memory that reading the scene may take (8192)", 1},
+    {"import-time-s", KEY_IMPORT_TIME, "S", 0,
+     "Processor time that reading the scene may take (300)", 1},
+    {0, 0, 0, 0, "Objects:", 2},
+    {"max-object-triangles", KEY_MAX_OBJECT, "N", 0, "Split larger objects (4096)", 2},
+    {"min-object-triangles", KEY_MIN_OBJECT, "N", 0, "Gather smaller neighbours (256)", 2},
+    {"chunk-size", KEY_CHUNK_SIZE, "UNITS", 0,
+     "Edge of the chunks of large surfaces, in scene units (from the layout)", 2},
+    {0, 0, 0, 0, "Tree:", 3},
+    {"octree", KEY_OCTREE, "loose|strict", 0, "Kind of tree (loose)", 3},
+    {"divisions", KEY_DIVISIONS, "NX,NY,NZ", 0, "strict: cells of the finest level (16,1,16)",
+     3},
+    {"group-radius", KEY_GROUP_RADIUS, "UNITS", 0,
+     "strict: take objects within it as one group first (0: none)", 3},
+    {"max-children", KEY_MAX_CHILDREN, "N", 0, "loose: children of a node, at most (16)", 3},
+    {0, 0, 0, 0, "Impostors and cost:", 4},
+    {"texture-mb", KEY_TEXTURE_MB, "MB", 0, "Memory for impostor pictures (256)", 4},
+    {"profile", KEY_PROFILE, "FILE", 0, "Cost profile that the model is built for", 4},
+    {0},
+};
+
+static error_t parse_import(build_options *o, int key, char *text, struct argp_state *state)
+{
+    prom_import_options *import = &o->build.import;
+    switch (key) {
+    case KEY_MAX_TEXTURE:
+        import->max_texture_px =
+            (uint32_t)prom_option_whole(state, "--max-texture-px", text, 1, PROM_TEXTURE_MAX);
+        break;
+    case KEY_IMPORT_MEMORY:
+        import->memory_bytes = prom_option_whole(state, "--import-memory-mb", text, 16, 1 << 24)
+                               << 20;
+        break;
+    case KEY_IMPORT_TIME:
+        import->time_s =
+            (uint32_t)prom_option_whole(state, "--import-time-s", text, 1, 1000000);
+        break;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+    return 0;
+}
+
+static error_t parse_objects(build_options *o, int key, char *text, struct argp_state *state)
+{
+    prom_object_options *objects = &o->build.objects;
+    switch (key) {
+    case KEY_MAX_OBJECT:
+        objects->max_triangles =
+            (uint32_t)prom_option_whole(state, "--max-object-triangles", text, 16, 100000000);
+        break;
+    case KEY_MIN_OBJECT:
+        objects->min_triangles =
+            (uint32_t)prom_option_whole(state, "--min-object-triangles", text, 1, 100000000);
+        break;
+    case KEY_CHUNK_SIZE:
+        objects->chunk_size = prom_option_number(state, "--chunk-size", text, 1e-6, 1e9);
+        break;
+    default:
+        return parse_import(o, key, text, state);
+    }
+    return 0;
+}
+
+static void parse_divisions(prom_tree_options *tree, const char *text,
+                            const struct argp_state *state)
+{
+    double n[3] = {1, 1, 1};
+    prom_option_numbers(state, "--divisions", text, ',', 1, 1024, 3, n);
+    for (int i = 0; i < 3; i++) {
+        if (n[i] != (uint32_t)n[i])
+            argp_error(state, "--divisions: `%s` is not in whole cells", text);
+        tree->divisions[i] = (uint32_t)n[i];
+    }
+}
+
+static error_t parse_tree(build_options *o, int key, char *text, struct argp_state *state)
+{
+    prom_tree_options *tree = &o->build.tree;
+    switch (key) {
+    case KEY_OCTREE:
+        if (!strcmp(text, "loose"))
+            tree->octree = PROM_OCTREE_LOOSE;
+        else if (!strcmp(text, "strict"))
+            tree->octree = PROM_OCTREE_STRICT;
+        else
+            argp_error(state, "--octree: `%s` is neither loose nor strict", text);
+        break;
+    case KEY_DIVISIONS:
+        parse_divisions(tree, text, state);
+        break;
+    case KEY_GROUP_RADIUS:
+        tree->group_radius = prom_option_number(state, "--group-radius", text, 0, 1e9);
+        break;
+    case KEY_MAX_CHILDREN:
+        tree->max_children =
+            (uint32_t)prom_option_whole(state, "--max-children", text, 2, 1024);
+        break;
+    default:
+        return parse_objects(o, key, text, state);
+    }
+    return 0;
+}
+
+// The strict tree's options mean nothing to the loose one and the other way round.
+static void check_tree(const prom_tree_options *tree, const struct argp_state *state)
+{
+    bool strict = tree->octree == PROM_OCTREE_STRICT;
+    if (!strict && (tree->divisions[0] || tree->group_radius > 0))
+        argp_error(state, "--divisions and --group-radius are for --octree strict");
+    if (strict && tree->max_children) argp_error(state, "--max-children is for --octree loose");
+}
+
+static error_t parse(int key, char *text, struct argp_state *state)
+{
+    build_options *o = state->input;
+    switch (key) {
+    case 'o':
+        o->output = text;
+        break;
+    case KEY_TEXTURE_MB:
+        o->build.texture_mb =
+            (uint32_t)prom_option_whole(state, "--texture-mb", text, 1, 1 << 20);
+        break;
+    case KEY_PROFILE:
+        o->build.profile = text;
+        break;
+    case ARGP_KEY_ARG:
+        prom_option_argument(state, text, &o->scene);
+        break;
+    case ARGP_KEY_END:
+        prom_option_require(state, "the scene's file", o->scene);
+        prom_option_require(state, "--output", o->output);
+        check_tree(&o->build.tree, state);
+        break;
+    default:
+        return parse_tree(o, key, text, state);
+    }
+    return 0;
+}
+
+static const struct argp_child children[] = {{&prom_argp_log, 0, NULL, 0}, {0}};
+
+static const struct argp argp = {
+    .options = options,
+    .parser = parse,
+    .args_doc = "SCENE",
+    .doc = "Build a model from a scene (glTF, GLB, OBJ or PLY).\v"
+           "The model appears when the build has succeeded, or not at all.",
+    .children = children,
+};
+
+static prom_status check_files(const build_options *o, prom_error *error)
+{
+    struct stat scene, output;
+    if (stat(o->scene, &scene) != 0)
+        return prom_fail(error, PROM_ERR_INPUT, "%s: cannot be read: %m", o->scene);
+    if (!S_ISREG(scene.st_mode))
+        return prom_fail(error, PROM_ERR_INPUT, "%s: is not a file", o->scene);
+    if (stat(o->output, &output) == 0 && output.st_dev == scene.st_dev &&
+        output.st_ino == scene.st_ino)
+        return prom_fail(error, PROM_ERR_USAGE,
+                         "%s: is the scene itself; give --output another name", o->output);
+    return prom_output_check(o->output, error);
+}
+
+static void print_report(const build_options *o, const prom_build_report *r, double seconds)
+{
+    double triangles = (double)(r->source_triangles ? r->source_triangles : 1);
+    printf("%s: built in %.1f s\n", o->output, seconds);
+    printf("triangles        %12" PRIu64 "\n", r->source_triangles);
+    printf("objects          %12" PRIu32 "\n", r->objects);
+    printf("prototypes       %12" PRIu32 "\n", r->prototypes);
+    printf("nodes            %12" PRIu32 "  (most children: %" PRIu32 ")\n", r->nodes,
+           r->max_children);
+    printf("representations  %12" PRIu32 "\n", r->representations);
+    printf("file             %12.1f MiB (%.0f bytes a triangle)\n",
+           (double)r->file_bytes / (1 << 20), (double)r->file_bytes / triangles);
+    printf("peak memory      %12.1f MiB\n", (double)r->peak_bytes / (1 << 20));
+    printf("content          %016" PRIx64 "\n", r->content_hash);
+}
+
+prom_status prom_command_build(int argc, char **argv, prom_error *error)
+{
+    build_options o = {0};
+    argp_parse(&argp, argc, argv, 0, NULL, &o);
+    if (o.build.tree.octree == PROM_OCTREE_STRICT && !o.build.tree.divisions[0])
+        memcpy(o.build.tree.divisions, (uint32_t[]){16, 1, 16}, sizeof o.build.tree.divisions);
+    prom_status status = check_files(&o, error);
+    if (status) return status;
+    double start = prom_clock_ms();
+    prom_build_report report = {0};
+    status = prom_build(o.scene, o.output, &o.build, &report, error);
+    if (status) return status;
+    print_report(&o, &report, (prom_clock_ms() - start) / 1000.0);
+    return PROM_OK;
+}

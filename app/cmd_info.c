@@ -1,0 +1,305 @@
+// promenade info: what a model holds.
+#include "app/command.h"
+#include "app/model_facts.h"
+#include "app/options.h"
+#include "app/output.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <sys/stat.h>
+
+typedef struct info_options {
+    const char *model;
+    bool json;
+} info_options;
+
+enum { KEY_JSON = 0x1000 };
+
+static const struct argp_option options[] = {
+    {"json", KEY_JSON, NULL, 0, "Print JSON instead of text", 0},
+    {0},
+};
+
+static error_t parse(int key, char *text, struct argp_state *state)
+{
+    info_options *o = state->input;
+    switch (key) {
+    case KEY_JSON:
+        o->json = true;
+        break;
+    case ARGP_KEY_ARG:
+        prom_option_argument(state, text, &o->model);
+        break;
+    case ARGP_KEY_END:
+        prom_option_require(state, "the model (a .prom file)", o->model);
+        break;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+    return 0;
+}
+
+static const struct argp_child children[] = {{&prom_argp_log, 0, NULL, 0}, {0}};
+
+static const struct argp argp = {
+    .options = options,
+    .parser = parse,
+    .args_doc = "X.prom",
+    .doc = "Tell what a model holds and how it was made.",
+    .children = children,
+};
+
+typedef struct facts {
+    const char *path;
+    prom_container *container;
+    prom_model_facts model;
+    uint64_t file_bytes, content_hash;
+    json_t *stages; // array of {name, ms, content}
+} facts;
+
+static void add_stage(void *user, const char *name, uint64_t content_hash, double ms)
+{
+    char hash[17];
+    snprintf(hash, sizeof hash, "%016" PRIx64, content_hash);
+    json_t *stage = json_pack("{s:o, s:o, s:s}", "name", prom_json_text(name), "ms",
+                              prom_json_number(ms), "content", hash);
+    json_array_append_new(user, stage);
+}
+
+static prom_status gather(facts *f, prom_error *error)
+{
+    prom_model model = {0};
+    f->container = prom_container_open(f->path, error);
+    if (!f->container) return error->status;
+    prom_status status = prom_container_load_model(f->container, &model, error);
+    if (status) return status;
+    prom_model_facts_of(&model, &f->model);
+    prom_model_finish(&model);
+    status = prom_container_content_hash(f->container, &f->content_hash, error);
+    if (!status) status = prom_container_stages(f->container, add_stage, f->stages, error);
+    struct stat st = {0};
+    stat(f->path, &st);
+    f->file_bytes = (uint64_t)st.st_size;
+    return status;
+}
+
+// ---- JSON
+
+static void set(json_t *object, const char *key, json_t *value)
+{
+    json_object_set_new(object, key, value);
+}
+
+static void set_count(json_t *object, const char *key, uint64_t count)
+{
+    set(object, key, json_integer((json_int_t)count));
+}
+
+// The builder's counts, {} if the file has none.
+static json_t *found_json(const facts *f)
+{
+    const char *text = prom_container_meta(f->container, "found");
+    json_t *found = text ? json_loads(text, 0, NULL) : NULL;
+    if (!json_is_object(found)) {
+        json_decref(found);
+        found = json_object();
+    }
+    return found;
+}
+
+static json_t *meta_json(const facts *f, const char *key)
+{
+    const char *text = prom_container_meta(f->container, key);
+    return text ? prom_json_text(text) : json_null();
+}
+
+static json_t *nodes_json(const prom_model_facts *m)
+{
+    json_t *nodes = json_object(), *levels = json_array();
+    for (uint32_t l = 0; l < m->levels; l++)
+        json_array_append_new(levels, json_integer(m->nodes_by_level[l]));
+    set_count(nodes, "leaves", m->leaves);
+    set_count(nodes, "objects", m->object_leaves);
+    set_count(nodes, "chunks", m->surface_leaves);
+    set_count(nodes, "blended", m->blended_leaves);
+    set_count(nodes, "clusters", m->clusters);
+    set_count(nodes, "backdrops", m->backdrops);
+    set_count(nodes, "most_children", m->most_children);
+    set(nodes, "by_level", levels);
+    return nodes;
+}
+
+static json_t *prototypes_json(const prom_model_facts *m)
+{
+    json_t *json = json_object();
+    set_count(json, "leaves", m->leaf_prototypes);
+    set_count(json, "clusters", m->cluster_prototypes);
+    set_count(json, "placed_twice_or_more", m->shared_prototypes);
+    return json;
+}
+
+static json_t *reps_json(const prom_model_facts *m)
+{
+    json_t *json = json_object();
+    for (uint32_t k = 0; k < PROM_REP_KIND_COUNT; k++) {
+        json_t *kind = json_object();
+        set_count(kind, "leaf", m->reps[k].leaf);
+        set_count(kind, "cluster", m->reps[k].cluster);
+        set_count(kind, "triangles", m->reps[k].triangles);
+        set(json, prom_rep_kind_name(k), kind);
+    }
+    return json;
+}
+
+static json_t *textures_json(const prom_model_facts *m)
+{
+    json_t *json = json_object();
+    for (uint32_t k = 0; k < PROM_TEXTURE_KIND_COUNT; k++) {
+        json_t *kind = json_object();
+        set_count(kind, "count", m->textures[k].count);
+        set_count(kind, "bytes", m->textures[k].bytes);
+        set(json, prom_texture_kind_name(k), kind);
+    }
+    return json;
+}
+
+static json_t *tables_json(const prom_model_facts *m)
+{
+    json_t *json = json_object();
+    for (int t = 0; t < PROM_FACT_TABLES; t++) {
+        json_t *table = json_object();
+        set_count(table, "rows", m->tables[t].rows);
+        set_count(table, "bytes", m->tables[t].bytes);
+        set(json, m->tables[t].name, table);
+    }
+    return json;
+}
+
+static json_t *to_json(const facts *f)
+{
+    const prom_model_facts *m = &f->model;
+    char hash[17];
+    snprintf(hash, sizeof hash, "%016" PRIx64, f->content_hash);
+    json_t *json = json_object();
+    set(json, "model", prom_json_text(f->path));
+    set_count(json, "file_bytes", f->file_bytes);
+    set(json, "content", json_string(hash));
+    set(json, "source", meta_json(f, "source"));
+    set(json, "settings", meta_json(f, "settings"));
+    set(json, "device", meta_json(f, "device"));
+    set(json, "found", found_json(f));
+    set_count(json, "triangles", m->triangles);
+    set(json, "size",
+        json_pack("[o, o, o]", prom_json_number(m->size[0]), prom_json_number(m->size[1]),
+                  prom_json_number(m->size[2])));
+    set(json, "nodes", nodes_json(m));
+    set(json, "prototypes", prototypes_json(m));
+    set(json, "representations", reps_json(m));
+    set(json, "textures", textures_json(m));
+    set_count(json, "materials", m->materials);
+    set(json, "tables", tables_json(m));
+    set(json, "stages", json_incref(f->stages));
+    return json;
+}
+
+// ---- text
+
+static double mib(uint64_t bytes)
+{
+    return (double)bytes / (1 << 20);
+}
+
+static void print_meta(const facts *f, const char *label, const char *key)
+{
+    const char *text = prom_container_meta(f->container, key);
+    if (text) printf("%-16s %s\n", label, text);
+}
+
+static void print_found(const facts *f)
+{
+    json_t *found = found_json(f), *value;
+    const char *key, *comma = "";
+    if (json_object_size(found)) printf("%-16s ", "import found");
+    json_object_foreach(found, key, value)
+    {
+        if (!json_is_integer(value)) continue;
+        printf("%s%s %" JSON_INTEGER_FORMAT, comma, key, json_integer_value(value));
+        comma = ", ";
+    }
+    if (*comma) putchar('\n');
+    json_decref(found);
+}
+
+static void print_tree(const prom_model_facts *m)
+{
+    printf("%-16s %" PRIu64 " (every instance counted)\n", "triangles", m->triangles);
+    printf("%-16s %g x %g x %g\n", "size", m->size[0], m->size[1], m->size[2]);
+    printf("%-16s %u leaves (%u objects, %u surface chunks, %u blended), %u clusters, "
+           "%u backdrops\n",
+           "nodes", m->leaves, m->object_leaves, m->surface_leaves, m->blended_leaves,
+           m->clusters, m->backdrops);
+    printf("%-16s", "nodes by level");
+    for (uint32_t l = 0; l < m->levels; l++) printf(" %u", m->nodes_by_level[l]);
+    printf("\n%-16s %u\n", "most children", m->most_children);
+    printf("%-16s %u of leaves, %u of clusters; %u placed twice or more\n", "prototypes",
+           m->leaf_prototypes, m->cluster_prototypes, m->shared_prototypes);
+}
+
+static void print_bulk(const prom_model_facts *m)
+{
+    printf("\n%-16s %10s %10s %12s\n", "representation", "of leaves", "clusters", "triangles");
+    for (uint32_t k = 0; k < PROM_REP_KIND_COUNT; k++)
+        printf("%-16s %10u %10u %12" PRIu64 "\n", prom_rep_kind_name(k), m->reps[k].leaf,
+               m->reps[k].cluster, m->reps[k].triangles);
+    printf("\n%-16s %10s %10s\n", "textures", "count", "MiB");
+    for (uint32_t k = 0; k < PROM_TEXTURE_KIND_COUNT; k++)
+        printf("%-16s %10u %10.2f\n", prom_texture_kind_name(k), m->textures[k].count,
+               mib(m->textures[k].bytes));
+    printf("\n%-16s %10s %10s\n", "table", "rows", "MiB loaded");
+    for (int t = 0; t < PROM_FACT_TABLES; t++)
+        printf("%-16s %10" PRIu64 " %10.2f\n", m->tables[t].name, m->tables[t].rows,
+               mib(m->tables[t].bytes));
+}
+
+static void print_stages(const json_t *stages)
+{
+    size_t i;
+    json_t *stage;
+    double all = 0;
+    printf("\n%-16s %10s\n", "stage", "seconds");
+    json_array_foreach(stages, i, stage)
+    {
+        double ms = json_number_value(json_object_get(stage, "ms"));
+        all += ms;
+        printf("%-16s %10.2f\n", json_string_value(json_object_get(stage, "name")), ms / 1000);
+    }
+    printf("%-16s %10.2f\n", "all", all / 1000);
+}
+
+static void print_text(const facts *f)
+{
+    printf("%-16s %s, %.2f MiB\n", "model", f->path, mib(f->file_bytes));
+    printf("%-16s %016" PRIx64 "\n", "content", f->content_hash);
+    print_meta(f, "source", "source");
+    print_meta(f, "settings", "settings");
+    print_meta(f, "device", "device");
+    print_found(f);
+    print_tree(&f->model);
+    print_bulk(&f->model);
+    print_stages(f->stages);
+}
+
+prom_status prom_command_info(int argc, char **argv, prom_error *error)
+{
+    info_options o = {0};
+    argp_parse(&argp, argc, argv, 0, NULL, &o);
+    facts f = {.path = o.model, .stages = json_array()};
+    prom_status status = gather(&f, error);
+    if (!status && o.json)
+        status = prom_output_print_json(to_json(&f), error);
+    else if (!status)
+        print_text(&f);
+    prom_container_close(f.container);
+    json_decref(f.stages);
+    return status;
+}

@@ -1,0 +1,149 @@
+// promenade shot: one picture of a model.
+#include "app/command.h"
+#include "app/output.h"
+#include "app/session.h"
+
+#include "metaobj/base/log.h"
+#include "traverse/governor.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#define AUTO_FRAMES 300
+
+typedef struct shot_options {
+    prom_view_options view;
+    const char *model, *output;
+    uint64_t frame;
+    double eye[3], look_at[3];
+    bool has_eye, has_look_at;
+    prom_frame_options draw;
+} shot_options;
+
+enum { KEY_FRAME = 0x1000, KEY_EYE, KEY_LOOK_AT, KEY_FALSE_COLOURS, KEY_WIREFRAME };
+
+static const struct argp_option options[] = {
+    {"output", 'o', "FILE", 0, "The picture to write (PNG)", -1},
+    {"frame", KEY_FRAME, "N", 0, "Frame of the path, from 0 (0)", 0},
+    {"eye", KEY_EYE, "X,Y,Z", 0, "Instead of a path: the camera's place", 0},
+    {"look-at", KEY_LOOK_AT, "X,Y,Z", 0, "With --eye: a point to look at", 0},
+    {"false-colours", KEY_FALSE_COLOURS, NULL, 0,
+     "Colour by kind of representation: meshes green (fine to coarse: dark to light), clusters "
+     "blue, average-colour boxes red, textured boxes orange",
+     1},
+    {"wireframe", KEY_WIREFRAME, NULL, 0, "Draw edges only", 1},
+    {0},
+};
+
+static void check_camera(const shot_options *o, const struct argp_state *state)
+{
+    if (o->has_eye != o->has_look_at) argp_error(state, "--eye and --look-at belong together");
+    if (o->has_eye && o->view.path) argp_error(state, "--path and --eye exclude each other");
+    double distance = 0;
+    for (int i = 0; i < 3; i++) distance += fabs(o->eye[i] - o->look_at[i]);
+    if (o->has_eye && !(distance > 0)) argp_error(state, "--look-at: is the eye's own place");
+}
+
+static error_t parse(int key, char *text, struct argp_state *state)
+{
+    shot_options *o = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[1] = &o->view;
+        break;
+    case 'o':
+        o->output = text;
+        break;
+    case KEY_FRAME:
+        o->frame = prom_option_whole(state, "--frame", text, 0, UINT32_MAX);
+        break;
+    case KEY_EYE:
+        prom_option_numbers(state, "--eye", text, ',', -1e9, 1e9, 3, o->eye);
+        o->has_eye = true;
+        break;
+    case KEY_LOOK_AT:
+        prom_option_numbers(state, "--look-at", text, ',', -1e9, 1e9, 3, o->look_at);
+        o->has_look_at = true;
+        break;
+    case KEY_FALSE_COLOURS:
+        o->draw.output = PROM_OUTPUT_TINT;
+        break;
+    case KEY_WIREFRAME:
+        o->draw.wireframe = true;
+        break;
+    case ARGP_KEY_ARG:
+        prom_option_argument(state, text, &o->model);
+        break;
+    case ARGP_KEY_END:
+        prom_option_require(state, "the model (a .prom file)", o->model);
+        prom_option_require(state, "--output", o->output);
+        check_camera(o, state);
+        break;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+    return 0;
+}
+
+static const struct argp_child children[] = {
+    {&prom_argp_log, 0, NULL, 0},
+    {&prom_argp_view, 0, NULL, 0},
+    {0},
+};
+
+static const struct argp argp = {
+    .options = options,
+    .parser = parse,
+    .args_doc = "X.prom",
+    .doc = "Draw one picture of a model.\v"
+           "With --budget-ms the selector is `greedy` unless given, without it `full`.",
+    .children = children,
+};
+
+static prom_status draw(const shot_options *o, prom_session *session, prom_error *error)
+{
+    bool budgeted = o->view.budget_ms > 0;
+    const char *name = o->view.selector ? o->view.selector : budgeted ? "greedy" : "full";
+    prom_selector *selector = prom_selector_create(name, &session->model, error);
+    if (!selector) return error->status;
+
+    prom_camera camera = session->camera;
+    if (o->has_eye) {
+        for (int i = 0; i < 3; i++) camera.eye[i] = o->eye[i];
+        prom_camera_look_at(&camera, o->look_at);
+    } else {
+        prom_path_pose(&session->path, o->frame, &camera);
+    }
+    prom_governor governor;
+    prom_governor_init(&governor, session->cost.margin);
+    double allowed = budgeted ? prom_governor_budget(&governor, o->view.budget_ms) : INFINITY;
+    prom_cut cut = {0};
+    prom_session_select(session, selector, &camera, allowed, o->view.distance_scale, &cut);
+    prom_session_draw(session, &cut, &camera, &o->draw);
+    prom_draw_stats stats = prom_renderer_take_stats(session->renderer);
+    if (cut.cmin_ms > allowed)
+        prom_log(PROM_LOG_WARNING,
+                 "budget %g ms: even the cheapest cut is predicted at %.1f ms of drawing",
+                 o->view.budget_ms, cut.cmin_ms);
+    prom_status status = prom_session_write_png(session, o->output, error);
+    if (!status)
+        printf("%s: %s, %llu triangles in %zu nodes, predicted %.1f ms\n", o->output, name,
+               (unsigned long long)stats.triangles, cut.entries.count, cut.predicted_ms);
+    prom_cut_finish(&cut);
+    prom_selector_destroy(selector);
+    return status;
+}
+
+prom_status prom_command_shot(int argc, char **argv, prom_error *error)
+{
+    shot_options o = {.view = prom_view_options_default};
+    argp_parse(&argp, argc, argv, 0, NULL, &o);
+    prom_status status = prom_output_check(o.output, error);
+    if (status) return status;
+    prom_session session;
+    status = prom_session_open(&session, o.model, &o.view, !o.has_eye, AUTO_FRAMES, error);
+    if (status) return status;
+    status = draw(&o, &session, error);
+    prom_session_close(&session);
+    return status;
+}

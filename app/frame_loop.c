@@ -1,0 +1,187 @@
+#include "app/frame_loop.h"
+
+#include "app/holes.h"
+#include "metaobj/base/clock.h"
+#include "metaobj/base/log.h"
+#include "traverse/governor.h"
+
+#include <stdio.h>
+#include <unistd.h>
+
+typedef struct loop {
+    prom_session *session;
+    const prom_loop_options *options;
+    prom_selector *selector;
+    prom_governor governor;
+    prom_cut cut;
+    prom_holes holes;
+} loop;
+
+static double memory_mb(void)
+{
+    FILE *file = fopen("/proc/self/statm", "r");
+    if (!file) return 0;
+    unsigned long long all, resident;
+    bool good = fscanf(file, "%llu %llu", &all, &resident) == 2;
+    fclose(file);
+    return good ? (double)resident * (double)sysconf(_SC_PAGESIZE) / (1 << 20) : 0;
+}
+
+static double path_time(const prom_path *path, uint64_t frame)
+{
+    size_t keys = path->keys.count;
+    if (keys < 2) return (double)frame / PROM_PATH_RATE;
+    double span = path->keys.data[keys - 1].t - path->keys.data[0].t;
+    return span / (double)(keys - 1) * (double)frame;
+}
+
+// What the frame may be predicted at, and what its prediction is corrected by, are those of its
+// start: the feedback comes after it.
+static prom_frame_record draw_frame(loop *l, uint64_t pose)
+{
+    prom_session *s = l->session;
+    prom_camera camera = s->camera;
+    prom_frame_options plain = {0};
+    double ratio = l->governor.ratio;
+
+    double start = prom_clock_ms();
+    prom_path_pose(&s->path, pose, &camera);
+    double allowed = prom_governor_budget(&l->governor, l->options->budget_ms);
+    prom_session_select(s, l->selector, &camera, allowed, l->options->distance_scale, &l->cut);
+    double selected = prom_clock_ms();
+    prom_session_draw(s, &l->cut, &camera, &plain);
+    double end = prom_clock_ms();
+
+    prom_draw_stats stats = prom_renderer_take_stats(s->renderer);
+    prom_frame_record record = {
+        .t_s = path_time(&s->path, pose),
+        .frame_ms = end - start,
+        .select_ms = selected - start,
+        .draw_ms = end - selected,
+        .predicted_ms = l->cut.predicted_ms * ratio,
+        .triangles = (double)stats.triangles,
+        .draws = (double)stats.draws,
+        .benefit_px = l->cut.benefit,
+        .loss_px = l->cut.loss,
+        .cut_nodes = (uint32_t)l->cut.entries.count,
+        .feasible = l->cut.cmin_ms <= allowed,
+    };
+    return record;
+}
+
+static void feed(loop *l, const prom_frame_record *record)
+{
+    prom_governor_feed(&l->governor, l->cut.predicted_ms, record->draw_ms, record->select_ms);
+}
+
+// The least budget from which the governor leaves `needed_ms` for the cut; it is monotone.
+static double budget_for(const prom_governor *governor, double needed_ms)
+{
+    double low = 0, high = 1;
+    while (high < 1e9 && prom_governor_budget(governor, high) < needed_ms) high *= 2;
+    for (int i = 0; i < 40; i++) {
+        double middle = (low + high) / 2;
+        if (prom_governor_budget(governor, middle) < needed_ms)
+            low = middle;
+        else
+            high = middle;
+    }
+    return high;
+}
+
+static void note_infeasible(const loop *l, prom_loop_result *result)
+{
+    result->infeasible_frames++;
+    double needed = budget_for(&l->governor, l->cut.cmin_ms);
+    if (needed > result->least_budget_ms) result->least_budget_ms = needed;
+}
+
+static prom_status keep_picture(loop *l, uint32_t frame, prom_error *error)
+{
+    char *path = prom_format("%s/frame-%05u.png", l->options->keep_folder, frame);
+    prom_status status = prom_session_write_png(l->session, path, error);
+    prom_free(path);
+    return status;
+}
+
+// Whether frame i is one of `wanted` evenly spaced ones out of `frames`.
+static bool is_spaced(uint32_t i, uint32_t wanted, uint32_t frames)
+{
+    uint64_t before = (uint64_t)i * wanted / frames;
+    uint64_t after = (uint64_t)(i + 1) * wanted / frames;
+    return after > before;
+}
+
+// Pictures and hole checks after a frame. They disturb the caches, and `full` the device's
+// memory: one frame is drawn again, untimed.
+static prom_status between_frames(loop *l, uint32_t i, prom_error *error)
+{
+    const prom_loop_options *o = l->options;
+    bool keep = o->keep_folder && i % o->keep_every == 0;
+    bool check = is_spaced(i, o->check_holes, o->frames);
+    if (!keep && !check) return PROM_OK;
+    prom_camera camera = l->session->camera;
+    prom_path_pose(&l->session->path, i, &camera);
+    if (keep) {
+        prom_status status = keep_picture(l, i, error);
+        if (status) return status;
+    }
+    if (check) prom_holes_check(&l->holes, l->session, &camera, &l->cut);
+    draw_frame(l, i);
+    return PROM_OK;
+}
+
+static void warm_up(loop *l)
+{
+    // Towards the start, so that the first recorded frame follows its neighbour.
+    for (uint32_t i = l->options->warmup; i > 0; i--) {
+        prom_frame_record record = draw_frame(l, i);
+        feed(l, &record);
+    }
+}
+
+static prom_status walk(loop *l, prom_loop_result *result, prom_error *error)
+{
+    const prom_loop_options *o = l->options;
+    prom_array_reserve(&result->frames, o->frames);
+    warm_up(l);
+    result->memory_start_mb = memory_mb();
+    prom_progress progress;
+    prom_progress_begin(&progress, "frames", o->frames);
+    prom_status status = PROM_OK;
+    for (uint32_t i = 0; i < o->frames && !status; i++) {
+        prom_frame_record record = draw_frame(l, i);
+        if (!record.feasible) note_infeasible(l, result);
+        feed(l, &record);
+        prom_array_push(&result->frames, record);
+        status = between_frames(l, i, error);
+        prom_progress_step(&progress, 1);
+    }
+    prom_progress_end(&progress);
+    result->memory_end_mb = memory_mb();
+    return status;
+}
+
+prom_status prom_frame_loop_run(prom_session *session, const prom_loop_options *options,
+                                prom_loop_result *result, prom_error *error)
+{
+    loop l = {.session = session, .options = options};
+    prom_status status = PROM_OK;
+    l.selector = prom_selector_create(options->selector, &session->model, error);
+    if (!l.selector) return error->status;
+    prom_governor_init(&l.governor, session->cost.margin);
+    if (options->check_holes) status = prom_holes_init(&l.holes, session, error);
+    if (!status) status = walk(&l, result, error);
+    result->hole_frames = l.holes.frames;
+    result->hole_max = l.holes.max;
+    result->hole_mean = l.holes.frames ? l.holes.sum / l.holes.frames : 0;
+    prom_holes_finish(&l.holes);
+    prom_cut_finish(&l.cut);
+    prom_selector_destroy(l.selector);
+    return status;
+}
+
+void prom_loop_result_finish(prom_loop_result *result)
+{
+    prom_array_finish(&result->frames);
+}

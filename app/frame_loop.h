@@ -1,0 +1,42 @@
+// The frame loop: walks a path, selects and draws every frame within a budget, and keeps what
+// was measured. A frame's time runs from its start to the finished image; pictures and hole
+// checks are made between frames.
+#ifndef PROM_APP_FRAME_LOOP_H
+#define PROM_APP_FRAME_LOOP_H
+
+#include "app/session.h"
+
+typedef struct prom_frame_record {
+    double t_s; // on the path
+    double frame_ms, select_ms, draw_ms;
+    double predicted_ms; // of draw_ms, as corrected before the frame
+    double triangles, draws;
+    double benefit_px, loss_px;
+    uint32_t cut_nodes;
+    bool feasible; // the cheapest cut was within what could be spent
+} prom_frame_record;
+
+typedef struct prom_loop_options {
+    const char *selector;
+    uint32_t frames, warmup; // warm-up frames are drawn before the first and not recorded
+    double budget_ms, distance_scale;
+    const char *keep_folder; // PNGs of every keep_every-th frame; NULL: none
+    uint32_t keep_every;
+    uint32_t check_holes; // frames to compare with `full`, evenly spaced; 0: none
+} prom_loop_options;
+
+typedef struct prom_loop_result {
+    PROM_ARRAY(prom_frame_record) frames;
+    uint32_t hole_frames;
+    double hole_mean,
+        hole_max; // share of the pixels that full detail covers and the cut does not
+    uint32_t infeasible_frames;
+    double least_budget_ms; // with which no frame would have been infeasible
+    double memory_start_mb, memory_end_mb;
+} prom_loop_result;
+
+prom_status prom_frame_loop_run(prom_session *session, const prom_loop_options *options,
+                                prom_loop_result *result, prom_error *error);
+void prom_loop_result_finish(prom_loop_result *result);
+
+#endif

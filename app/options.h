@@ -1,0 +1,47 @@
+// Command-line pieces that several commands share: argp children and value parsers.
+//
+// A parser ends the program through argp_error (one line, the hint to --help, exit code 1) when
+// the value is wrong, so its result can be used unchecked.
+#ifndef PROM_APP_OPTIONS_H
+#define PROM_APP_OPTIONS_H
+
+#include <argp.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+// A number within [min, max]; `name` is the option's, for the message.
+double prom_option_number(const struct argp_state *state, const char *name, const char *text,
+                          double min, double max);
+// The same for whole numbers.
+uint64_t prom_option_whole(const struct argp_state *state, const char *name, const char *text,
+                           uint64_t min, uint64_t max);
+// `count` numbers, separated by `separator`.
+void prom_option_numbers(const struct argp_state *state, const char *name, const char *text,
+                         char separator, double min, double max, unsigned count,
+                         double *values);
+// "W,H": a picture's size, each side within [16, 16384].
+void prom_option_resolution(const struct argp_state *state, const char *text, uint32_t size[2]);
+
+// Stores a command's only argument; a second one is a usage error.
+void prom_option_argument(const struct argp_state *state, const char *text, const char **slot);
+// A usage error unless the argument or option has been given; `what` as in "the model's file".
+void prom_option_require(const struct argp_state *state, const char *what, const char *value);
+
+// --quiet and --verbose, which set the log's level. No input.
+extern const struct argp prom_argp_log;
+
+// What `shot` and `bench` have in common. Input: prom_view_options.
+typedef struct prom_view_options {
+    const char *path;     // a file or "auto"; NULL: auto
+    const char *selector; // NULL: the command's default
+    const char *profile;  // NULL: the device's own
+    double budget_ms;     // 0: not given
+    double distance_scale;
+    double fov_degrees; // vertical
+    uint32_t size_px[2];
+} prom_view_options;
+
+extern const prom_view_options prom_view_options_default;
+extern const struct argp prom_argp_view;
+
+#endif

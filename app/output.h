@@ -1,0 +1,25 @@
+// Files that commands write: checked before the long work, then written whole or not at all.
+#ifndef PROM_APP_OUTPUT_H
+#define PROM_APP_OUTPUT_H
+
+#include "metaobj/base/status.h"
+
+#include <jansson.h>
+#include <stddef.h>
+
+// PROM_ERR_OUTPUT unless a file can be written there. NULL is allowed and fine. Leaves nothing.
+prom_status prom_output_check(const char *path, prom_error *error);
+// Makes a folder with its parents; fine when it is there already.
+prom_status prom_output_make_folder(const char *path, prom_error *error);
+// Writes PATH.part and renames it.
+prom_status prom_output_write(const char *path, const char *text, size_t bytes,
+                              prom_error *error);
+// The same for JSON, indented; takes the reference to `json`, also on failure.
+prom_status prom_output_write_json(const char *path, json_t *json, prom_error *error);
+// JSON values that cannot fail: null for what is not finite; bytes that are not UTF-8 as `?`.
+json_t *prom_json_number(double value);
+json_t *prom_json_text(const char *text);
+// Prints JSON to stdout; takes the reference.
+prom_status prom_output_print_json(json_t *json, prom_error *error);
+
+#endif

@@ -1,0 +1,127 @@
+#include "app/session.h"
+
+#include "app/calibration.h"
+#include "builder/image_io.h"
+#include "metaobj/base/clock.h"
+
+#include <math.h>
+#include <string.h>
+
+static prom_status open_model(prom_session *s, const char *model_path, prom_error *error)
+{
+    s->container = prom_container_open(model_path, error);
+    if (!s->container) return error->status;
+    return prom_container_load_model(s->container, &s->model, error);
+}
+
+static prom_status open_device(prom_session *s, const uint32_t size_px[2], prom_error *error)
+{
+    s->context = prom_context_create_headless(error);
+    if (!s->context) return error->status;
+    s->renderer = prom_renderer_create(s->context, error);
+    if (!s->renderer) return error->status;
+    s->list = prom_draw_list_create(s->renderer);
+    s->target = prom_target_create(size_px[0], size_px[1], false, error);
+    return s->target ? PROM_OK : error->status;
+}
+
+static prom_status open_path(prom_session *s, const char *path, uint32_t frames,
+                             prom_error *error)
+{
+    if (!path || !strcmp(path, "auto"))
+        return prom_path_auto(&s->model, frames, &s->path, error);
+    return prom_path_load(path, &s->path, error);
+}
+
+static void set_camera(prom_session *s, const prom_view_options *options)
+{
+    s->camera = (prom_camera){
+        .orientation = {0, 0, 0, 1},
+        .fov_y = (float)(options->fov_degrees * M_PI / 180.0),
+        // Near enough for a close wall in any unit of length.
+        .z_near = fminf(0.1f, s->model.radius[0] / 1000.0f),
+        .width = options->size_px[0],
+        .height = options->size_px[1],
+    };
+    if (!(s->camera.z_near > 0)) s->camera.z_near = 1e-4f; // a model of a single point
+}
+
+static prom_status open_all(prom_session *s, const char *model_path,
+                            const prom_view_options *options, bool with_path,
+                            uint32_t path_frames, prom_error *error)
+{
+    double start = prom_clock_ms();
+    prom_status status = open_model(s, model_path, error);
+    if (!status && with_path) status = open_path(s, options->path, path_frames, error);
+    if (!status) status = open_device(s, options->size_px, error);
+    if (status) return status;
+    double before = prom_clock_ms();
+    status = prom_calibration_get(s->context, s->renderer, options->profile, options->size_px,
+                                  &s->cost, error);
+    if (status) return status;
+    double calibrated = prom_clock_ms();
+    status = prom_renderer_load(s->renderer, s->container, &s->model, error);
+    if (status) return status;
+    set_camera(s, options);
+    s->calibration_s = (calibrated - before) / 1000.0;
+    s->start_s = (prom_clock_ms() - start) / 1000.0 - s->calibration_s;
+    return PROM_OK;
+}
+
+prom_status prom_session_open(prom_session *session, const char *model_path,
+                              const prom_view_options *options, bool with_path,
+                              uint32_t path_frames, prom_error *error)
+{
+    *session = (prom_session){0};
+    prom_status status = open_all(session, model_path, options, with_path, path_frames, error);
+    if (status) prom_session_close(session);
+    return status;
+}
+
+void prom_session_close(prom_session *session)
+{
+    prom_path_finish(&session->path);
+    if (session->target) prom_target_destroy(session->target);
+    if (session->list) prom_draw_list_destroy(session->list);
+    if (session->renderer) prom_renderer_destroy(session->renderer);
+    prom_context_destroy(session->context);
+    prom_model_finish(&session->model);
+    prom_container_close(session->container);
+    *session = (prom_session){0};
+}
+
+void prom_session_select(const prom_session *session, prom_selector *selector,
+                         const prom_camera *camera, double budget_ms, double distance_scale,
+                         prom_cut *cut)
+{
+    prom_view view;
+    prom_view_init(&view, camera);
+    prom_selection selection = {
+        .view = &view,
+        .cost = &session->cost,
+        .budget_ms = budget_ms,
+        .distance_scale = (float)distance_scale,
+    };
+    prom_selector_run(selector, &selection, cut);
+}
+
+void prom_session_draw(prom_session *session, const prom_cut *cut, const prom_camera *camera,
+                       const prom_frame_options *options)
+{
+    prom_renderer_draw_frame(session->renderer, session->list, session->target, &session->model,
+                             cut, camera, options);
+    prom_renderer_finish(session->renderer);
+}
+
+prom_status prom_session_write_png(prom_session *session, const char *path, prom_error *error)
+{
+    uint32_t width = session->camera.width, height = session->camera.height;
+    size_t pixels = (size_t)width * height;
+    uint8_t *rgba = prom_alloc(pixels, 4);
+    prom_target_read_rgba(session->target, 0, 0, width, height, rgba);
+    // Alpha says what the tree covers; a picture to look at is opaque. Packs in place.
+    for (size_t i = 0; i < pixels; i++) memmove(rgba + 3 * i, rgba + 4 * i, 3);
+    prom_status status = prom_image_write_png(path, width, height, 3, rgba, error);
+    prom_free(rgba);
+    return status;
+}

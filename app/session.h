@@ -1,0 +1,46 @@
+// A session: a model opened and loaded on the device, with all that it takes to draw frames of
+// it. Shared by `shot` and `bench`.
+#ifndef PROM_APP_SESSION_H
+#define PROM_APP_SESSION_H
+
+#include "app/options.h"
+#include "metaobj/container.h"
+#include "metaobj/cut.h"
+#include "render/renderer.h"
+#include "scenes/path.h"
+#include "traverse/cost.h"
+#include "traverse/selector.h"
+#include "traverse/view.h"
+
+typedef struct prom_session {
+    prom_container *container;
+    prom_model model;
+    prom_context *context;
+    prom_renderer *renderer;
+    prom_draw_list *list;
+    prom_target *target;
+    prom_cost_model cost;
+    prom_path path;
+    prom_camera camera;   // all but the pose is set
+    double start_s;       // opening, loading and warming, without calibration
+    double calibration_s; // 0 when a profile was at hand
+} prom_session;
+
+// Opens everything, or nothing: on failure *session is {0}. `path_frames` is the length of an
+// automatic path; with_path false leaves the path empty.
+prom_status prom_session_open(prom_session *session, const char *model_path,
+                              const prom_view_options *options, bool with_path,
+                              uint32_t path_frames, prom_error *error);
+void prom_session_close(prom_session *session); // {0} is allowed
+
+// Selects a cut for a view.
+void prom_session_select(const prom_session *session, prom_selector *selector,
+                         const prom_camera *camera, double budget_ms, double distance_scale,
+                         prom_cut *cut);
+// Draws a cut into the session's target and waits for the picture.
+void prom_session_draw(prom_session *session, const prom_cut *cut, const prom_camera *camera,
+                       const prom_frame_options *options);
+// Writes the target's picture as a PNG; what the tree does not cover shows the background.
+prom_status prom_session_write_png(prom_session *session, const char *path, prom_error *error);
+
+#endif

@@ -1,0 +1,83 @@
+#include "app/statistics.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static int compare(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double nearest_rank(const double *sorted, size_t count, double share)
+{
+    double rank = ceil(share * (double)count);
+    return sorted[rank < 1 ? 0 : (size_t)rank - 1];
+}
+
+prom_spread prom_spread_of(double *values, size_t count)
+{
+    double sum = 0, squares = 0;
+    qsort(values, count, sizeof *values, compare);
+    for (size_t i = 0; i < count; i++) sum += values[i];
+    double mean = sum / (double)count;
+    for (size_t i = 0; i < count; i++) squares += (values[i] - mean) * (values[i] - mean);
+    return (prom_spread){
+        .mean = mean,
+        .p50 = nearest_rank(values, count, 0.50),
+        .p95 = nearest_rank(values, count, 0.95),
+        .p99 = nearest_rank(values, count, 0.99),
+        .max = values[count - 1],
+        .std = sqrt(squares / (double)count),
+    };
+}
+
+static void add_misses(const prom_frame_record *records, size_t count, double budget_ms,
+                       prom_run_statistics *s)
+{
+    uint32_t run = 0;
+    for (size_t i = 0; i < count; i++) {
+        bool miss = records[i].frame_ms > budget_ms;
+        run = miss ? run + 1 : 0;
+        s->misses += miss;
+        if (run > s->longest_misses) s->longest_misses = run;
+    }
+    s->miss_rate = (double)s->misses / (double)count;
+    s->use_of_budget = s->frame_ms.mean / budget_ms;
+}
+
+static void add_prediction(const prom_frame_record *records, size_t count,
+                           prom_run_statistics *s)
+{
+    size_t known = 0;
+    for (size_t i = 0; i < count; i++) {
+        double predicted = records[i].predicted_ms, actual = records[i].draw_ms;
+        if (!(predicted > 0) || !(actual > 0)) continue;
+        known++;
+        s->mape += fabs(predicted / actual - 1);
+        s->worst_under = fmax(s->worst_under, actual / predicted - 1);
+    }
+    if (known) s->mape /= (double)known;
+}
+
+prom_run_statistics prom_run_statistics_of(const prom_frame_record *records, size_t count,
+                                           double budget_ms)
+{
+    prom_run_statistics s = {0};
+    double *values = prom_alloc(count, sizeof *values);
+    for (size_t i = 0; i < count; i++) values[i] = records[i].frame_ms;
+    s.frame_ms = prom_spread_of(values, count);
+    for (size_t i = 0; i < count; i++) values[i] = records[i].select_ms;
+    s.select_ms = prom_spread_of(values, count);
+    prom_free(values);
+    for (size_t i = 0; i < count; i++) {
+        s.triangles += records[i].triangles / (double)count;
+        s.draws += records[i].draws / (double)count;
+        s.cut_nodes += records[i].cut_nodes / (double)count;
+        s.benefit_px += records[i].benefit_px / (double)count;
+        s.loss_px += records[i].loss_px / (double)count;
+    }
+    add_misses(records, count, budget_ms, &s);
+    add_prediction(records, count, &s);
+    return s;
+}

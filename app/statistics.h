@@ -1,0 +1,26 @@
+// Statistics of the frames of a run.
+#ifndef PROM_APP_STATISTICS_H
+#define PROM_APP_STATISTICS_H
+
+#include "app/frame_loop.h"
+
+typedef struct prom_spread {
+    double mean, p50, p95, p99, max; // percentiles by nearest rank
+    double std;                      // of the population
+} prom_spread;
+
+typedef struct prom_run_statistics {
+    prom_spread frame_ms, select_ms;
+    double triangles, draws, cut_nodes, benefit_px, loss_px; // means
+    double miss_rate, use_of_budget; // a miss: frame_ms above the budget
+    uint32_t misses, longest_misses; // the longest run of them
+    double mape, worst_under;        // of predicted_ms: mean |p/a - 1|, greatest a/p - 1
+} prom_run_statistics;
+
+// values: count >= 1 of them; sorted on return.
+prom_spread prom_spread_of(double *values, size_t count);
+// records: count >= 1.
+prom_run_statistics prom_run_statistics_of(const prom_frame_record *records, size_t count,
+                                           double budget_ms);
+
+#endif
