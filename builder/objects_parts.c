@@ -1,0 +1,234 @@
+// Parts: what every source node contributes, and which of them have equal shapes.
+#include "builder/objects_private.h"
+#include "metaobj/base/alloc.h"
+#include "metaobj/base/log.h"
+
+#include <stdlib.h>
+
+// A scale that differs more than this between the axes is baked into the shape.
+#define UNIFORM_SCALE 1.05
+// Stretches within this factor of each other share a shape; what is left stays in the
+// placement.
+#define STRETCH_STEP 1.01
+enum { FLAT = INT32_MAX };
+
+static prom_placement placement_from_columns(const double world[16], double columns[3][3])
+{
+    prom_placement p = {.origin = {world[12], world[13], world[14]}};
+    for (int c = 0; c < 3; c++)
+        for (int r = 0; r < 3; r++) p.basis[c * 3 + r] = (float)columns[c][r];
+    return p;
+}
+
+static double length3(const double v[3])
+{
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+// A direction at right angles to the two other columns, for one that is squeezed to nothing.
+static void restore_column(double columns[3][3], int c, double length)
+{
+    const double *a = columns[(c + 1) % 3], *b = columns[(c + 2) % 3];
+    double n[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                   a[0] * b[1] - a[1] * b[0]};
+    double l = length3(n);
+    for (int k = 0; k < 3; k++) columns[c][k] = l > 0 ? n[k] / l * length : 0;
+}
+
+// Takes a non-uniform scale out of the world matrix. False when nothing is left to be seen.
+static bool set_placement(prom_part *part, const double world[16])
+{
+    double columns[3][3], length[3], longest = 0, shortest = INFINITY;
+    for (int c = 0; c < 3; c++) {
+        for (int r = 0; r < 3; r++) columns[c][r] = world[c * 4 + r];
+        length[c] = length3(columns[c]);
+        longest = fmax(longest, length[c]);
+        shortest = fmin(shortest, length[c]);
+    }
+    if (!(longest > 0)) return false;
+    if (longest > UNIFORM_SCALE * shortest) {
+        for (int c = 0; c < 3; c++) {
+            if (length[c] < 1e-6 * longest) {
+                part->stretch[c] = FLAT;
+                continue;
+            }
+            part->stretch[c] = (int32_t)lrint(log(longest / length[c]) / log(STRETCH_STEP));
+            double baked = pow(STRETCH_STEP, -part->stretch[c]);
+            for (int k = 0; k < 3; k++) columns[c][k] /= baked;
+        }
+        for (int c = 0; c < 3; c++)
+            if (part->stretch[c] == FLAT) restore_column(columns, c, longest);
+    }
+    part->placement = placement_from_columns(world, columns);
+    return true;
+}
+
+float prom_part_stretch(const prom_part *part, int axis)
+{
+    int32_t steps = part->stretch[axis];
+    return steps == FLAT ? 0 : (float)pow(STRETCH_STEP, -steps);
+}
+
+static bool is_blended(const prom_source *source, uint32_t mesh)
+{
+    uint32_t material = source->meshes.data[mesh].submeshes[0].material;
+    return material != PROM_NONE &&
+           source->materials.data[material].alpha_mode == PROM_ALPHA_BLEND;
+}
+
+static bool matrix_finite(const double m[16])
+{
+    for (int k = 0; k < 16; k++)
+        if (!isfinite(m[k]) || fabs(m[k]) > 1e30) return false;
+    return true;
+}
+
+// The node's opaque or blended meshes; false if it has none with an extent. *lost is set when
+// meshes were there and had none.
+static bool make_part(prom_finder *finder, uint32_t node, bool blended,
+                      const prom_box *mesh_bounds, prom_part *part, bool *lost)
+{
+    const prom_source *source = finder->source;
+    const prom_source_node *n = &source->nodes.data[node];
+    *part = (prom_part){.node = node,
+                        .scope = finder->node_scope[node],
+                        .first_mesh = (uint32_t)finder->part_meshes.count,
+                        .blended = blended,
+                        .bounds = PROM_WBOX_EMPTY};
+    prom_placement whole = prom_placement_from_matrix(n->world);
+    uint64_t triangles = 0;
+    for (uint32_t i = 0; i < n->mesh_count; i++) {
+        uint32_t mesh = source->mesh_refs.data[n->first_mesh + i];
+        const prom_mesh *m = &source->meshes.data[mesh];
+        if (!m->index_count || is_blended(source, mesh) != blended) continue;
+        prom_array_push(&finder->part_meshes, mesh);
+        triangles += m->index_count / 3;
+        prom_wbox b = prom_wbox_of_placed(&mesh_bounds[mesh], &whole);
+        prom_wbox_add(&part->bounds, &b);
+    }
+    part->mesh_count = (uint32_t)finder->part_meshes.count - part->first_mesh;
+    if (!part->mesh_count) return false;
+    double diagonal = prom_wbox_diagonal(&part->bounds);
+    if (diagonal > 0 && isfinite(diagonal) && triangles <= UINT32_MAX / 3 &&
+        set_placement(part, n->world)) {
+        part->triangles = (uint32_t)triangles;
+        return true;
+    }
+    *lost = true;
+    finder->part_meshes.count = part->first_mesh;
+    return false;
+}
+
+static void collect_parts(prom_finder *finder)
+{
+    const prom_source *source = finder->source;
+    prom_box *mesh_bounds = prom_alloc(source->meshes.count, sizeof *mesh_bounds);
+    for (size_t i = 0; i < source->meshes.count; i++)
+        mesh_bounds[i] = prom_mesh_bounds(&source->meshes.data[i]);
+    uint32_t broken = 0, empty = 0;
+    for (uint32_t i = 0; i < source->nodes.count; i++) {
+        const prom_source_node *n = &source->nodes.data[i];
+        if (finder->node_scope[i] == PROM_NONE || !n->mesh_count) continue;
+        if (!matrix_finite(n->world)) {
+            if (!broken++)
+                prom_log(PROM_LOG_WARNING,
+                         "node %u '%s' has a matrix that is not finite; it is left out", i,
+                         n->name ? n->name : "");
+            continue;
+        }
+        bool lost = false;
+        for (int blended = 0; blended < 2; blended++) {
+            prom_part part;
+            if (make_part(finder, i, blended, mesh_bounds, &part, &lost))
+                prom_array_push(&finder->parts, part);
+        }
+        if (lost && !empty++)
+            prom_log(PROM_LOG_WARNING,
+                     "node %u '%s' has geometry without any extent; it is left out", i,
+                     n->name ? n->name : "");
+    }
+    if (broken > 1)
+        prom_log(PROM_LOG_WARNING, "%u nodes were left out for such matrices", broken);
+    if (empty > 1) prom_log(PROM_LOG_WARNING, "%u nodes were without any extent", empty);
+    prom_free(mesh_bounds);
+}
+
+static int by_scope(const void *pa, const void *pb)
+{
+    const prom_part *a = pa, *b = pb;
+    if (a->scope != b->scope) return a->scope < b->scope ? -1 : 1;
+    if (a->node != b->node) return a->node < b->node ? -1 : 1;
+    return (int)a->blended - (int)b->blended;
+}
+
+typedef struct kind_key {
+    const uint32_t *meshes;
+    const prom_part *part;
+    uint32_t index;
+} kind_key;
+
+static int compare_shapes(const kind_key *a, const kind_key *b)
+{
+    if (a->part->mesh_count != b->part->mesh_count)
+        return a->part->mesh_count < b->part->mesh_count ? -1 : 1;
+    for (uint32_t i = 0; i < a->part->mesh_count; i++)
+        if (a->meshes[i] != b->meshes[i]) return a->meshes[i] < b->meshes[i] ? -1 : 1;
+    for (int k = 0; k < 3; k++)
+        if (a->part->stretch[k] != b->part->stretch[k])
+            return a->part->stretch[k] < b->part->stretch[k] ? -1 : 1;
+    return 0;
+}
+
+static int by_shape(const void *pa, const void *pb)
+{
+    const kind_key *a = pa, *b = pb;
+    int c = compare_shapes(a, b);
+    return c ? c : a->index < b->index ? -1 : 1;
+}
+
+// Numbers the kinds of parts and tells which parts are the only ones of their kind in a scope.
+static void number_kinds(prom_finder *finder)
+{
+    size_t n = finder->parts.count;
+    kind_key *keys = prom_alloc(n, sizeof *keys);
+    for (uint32_t i = 0; i < n; i++) {
+        const prom_part *p = &finder->parts.data[i];
+        keys[i] = (kind_key){finder->part_meshes.data + p->first_mesh, p, i};
+    }
+    qsort(keys, n, sizeof *keys, by_shape);
+    uint32_t kind = 0;
+    for (size_t i = 0; i < n; i++) {
+        if (i && compare_shapes(&keys[i - 1], &keys[i])) kind++;
+        finder->parts.data[keys[i].index].kind = kind;
+    }
+    // Parts stand by scope, so those of one kind and scope are neighbours among the keys.
+    for (size_t i = 0; i < n; i++) {
+        prom_part *p = &finder->parts.data[keys[i].index];
+        const prom_part *before = i ? keys[i - 1].part : NULL;
+        const prom_part *after = i + 1 < n ? keys[i + 1].part : NULL;
+        p->unique = !(before && before->kind == p->kind && before->scope == p->scope) &&
+                    !(after && after->kind == p->kind && after->scope == p->scope);
+    }
+    prom_free(keys);
+    finder->kind_count = kind + 1;
+    finder->kind_shape = prom_alloc(finder->kind_count, 2 * sizeof *finder->kind_shape);
+    memset(finder->kind_shape, 0xff, finder->kind_count * 2 * sizeof *finder->kind_shape);
+}
+
+prom_status prom_find_parts(prom_finder *finder, prom_error *error)
+{
+    collect_parts(finder);
+    size_t n = finder->parts.count;
+    if (!n)
+        return prom_fail(
+            error, PROM_ERR_INPUT,
+            "the scene has no geometry with an extent; nothing can be built from it");
+    qsort(finder->parts.data, n, sizeof *finder->parts.data, by_scope);
+    for (size_t i = n; i-- > 0;) {
+        prom_scope *s = &finder->scopes.data[finder->parts.data[i].scope];
+        s->first_part = (uint32_t)i;
+        s->part_count++;
+    }
+    number_kinds(finder);
+    return PROM_OK;
+}
