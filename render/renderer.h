@@ -5,8 +5,8 @@
 //   ids = prom_renderer_add_texture / _add_mesh ..., prom_renderer_set_materials
 //   prom_draw_list: reset, add items, then submit with a projection, any number of times
 //
-// Shading: Lambert sun plus hemisphere ambient, per vertex, from fixed lights (lighting.glsl), in
-// linear light, written to an sRGB target. Depth is reverse z, infinite far.
+// Shading: Lambert sun plus hemisphere ambient, per vertex, from fixed lights (lighting.glsl),
+// in linear light, written to an sRGB target. Depth is reverse z, infinite far.
 #ifndef PROM_RENDER_RENDERER_H
 #define PROM_RENDER_RENDERER_H
 
@@ -31,7 +31,8 @@ uint32_t prom_renderer_add_texture(prom_renderer *renderer, const prom_texture *
 // The materials that submeshes name; their textures are texture ids of this renderer.
 void prom_renderer_set_materials(prom_renderer *renderer, const prom_material *materials,
                                  uint32_t count);
-// Forgets meshes and textures added after the given counts (for the builder's short-lived ones).
+// Forgets meshes and textures added after the given counts (for the builder's short-lived
+// ones).
 void prom_renderer_truncate(prom_renderer *renderer, uint32_t mesh_count,
                             uint32_t texture_count);
 uint32_t prom_renderer_mesh_count(const prom_renderer *renderer);
@@ -56,14 +57,14 @@ typedef enum prom_output {
 
 typedef struct prom_draw_item {
     uint32_t mesh;
-    uint32_t texture;  // impostor pictures, or PROM_NONE
-    uint32_t flags;    // PROM_REP_UNLIT
-    uint32_t id;       // for the id buffer
-    uint8_t tint[4];   // sRGB; for PROM_OUTPUT_TINT
-    float origin[3];   // placement relative to the eye (or to the bake's centre)
-    float basis[9];    // column-major
-    float depth;       // draw order: ascending, blended ones descending
-    bool background;   // behind everything else, whatever its depth
+    uint32_t texture; // impostor pictures, or PROM_NONE
+    uint32_t flags;   // PROM_REP_UNLIT
+    uint32_t id;      // for the id buffer
+    uint8_t tint[4];  // sRGB; for PROM_OUTPUT_TINT
+    float origin[3];  // placement relative to the eye (or to the bake's centre)
+    float basis[9];   // column-major
+    float depth;      // draw order: ascending, blended ones descending
+    bool background;  // behind everything else, whatever its depth
 } prom_draw_item;
 
 typedef struct prom_draw_list prom_draw_list;
@@ -72,12 +73,12 @@ prom_draw_list *prom_draw_list_create(prom_renderer *renderer);
 void prom_draw_list_destroy(prom_draw_list *list);
 void prom_draw_list_reset(prom_draw_list *list);
 void prom_draw_list_add(prom_draw_list *list, const prom_draw_item *item);
-// Sorts and uploads the commands: opaque front to back in depth slices, grouped by state within a
-// slice; then the background; then blended back to front. Call once before submitting.
+// Sorts and uploads the commands: opaque front to back in depth slices, grouped by state within
+// a slice; then the background; then blended back to front. Call once before submitting.
 void prom_draw_list_prepare(prom_draw_list *list);
 
 typedef struct prom_pass {
-    mat4 projection; // clip from eye-relative world; reverse z
+    mat4 projection;              // clip from eye-relative world; reverse z
     uint32_t x, y, width, height; // viewport in the target, from the bottom left
     prom_output output;
     bool wireframe;
@@ -111,9 +112,8 @@ typedef struct prom_frame_options {
 // Draws the cut and the background layer of a loaded model from a camera: fills the list,
 // clears the target with the sky colour (alpha 0), submits. Does not wait.
 void prom_renderer_draw_frame(prom_renderer *renderer, prom_draw_list *list,
-                              prom_target *target, const prom_model *model,
-                              const prom_cut *cut, const prom_camera *camera,
-                              const prom_frame_options *options);
+                              prom_target *target, const prom_model *model, const prom_cut *cut,
+                              const prom_camera *camera, const prom_frame_options *options);
 
 // The tint of a representation in false colours: meshes from dark green (finest) to light,
 // clusters blue, average boxes red, textured boxes orange.

@@ -1,0 +1,34 @@
+// What the shaders get for each draw: a vertex attribute that changes per instance. (The same
+// from a storage buffer costs more per vertex on software devices; measured, see
+// docs of tests/bench/bench_render.c.) Private to render/.
+#ifndef PROM_RENDER_DRAW_RECORD_H
+#define PROM_RENDER_DRAW_RECORD_H
+
+#include <epoxy/gl.h>
+#include <stdint.h>
+
+// As in mesh.vert.
+enum {
+    DRAW_UNLIT = 1,
+    DRAW_DOUBLE_SIDED = 2,
+    DRAW_MIRRORED = 4,
+    DRAW_BACKGROUND = 8,
+};
+
+typedef struct draw_record {
+    float rows[3][4]; // placement relative to the eye
+    float color[4];   // of the material, linear
+    uint32_t layers;  // low half: of the picture; high half: of its normals
+    uint32_t flags;   // low half: DRAW_*; high half: alpha cutoff x 65535
+    uint32_t id;
+    uint8_t tint[4];
+} draw_record;
+
+// glMultiDrawElementsIndirect's command.
+typedef struct draw_command {
+    GLuint count, instance_count, first_index;
+    GLint base_vertex;
+    GLuint base_instance;
+} draw_command;
+
+#endif

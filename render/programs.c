@@ -1,0 +1,98 @@
+#include "render/programs.h"
+
+#include "metaobj/base/log.h"
+#include "render/shaders.h"
+
+#include <stdio.h>
+
+static const char *const pipeline_names[PIPELINE_COUNT] = {
+    "PLAIN", "TEXTURED", "MASKED", "BLENDED", "IMPOSTOR_UNLIT", "IMPOSTOR_LIT"};
+static const char *const look_names[LOOK_COUNT] = {"COLOR", "NORMAL", "TINT"};
+
+// The pipeline whose program serves: without the picture's colour a textured surface is a plain
+// one; normals and ids of see-through surfaces are written as masked ones; false colours of
+// impostors need no normals.
+static pipeline canonical(pipeline p, look l)
+{
+    if (p == PIPELINE_TEXTURED && l != LOOK_COLOR) return PIPELINE_PLAIN;
+    if (p == PIPELINE_BLENDED && l == LOOK_NORMAL) return PIPELINE_MASKED;
+    if (p == PIPELINE_IMPOSTOR_LIT && l == LOOK_TINT) return PIPELINE_IMPOSTOR_UNLIT;
+    return p;
+}
+
+static GLuint compile(GLenum stage, const char *prefix, const char *text, prom_error *error)
+{
+    const char *parts[] = {prefix, prom_glsl_lighting_glsl, text};
+    GLuint shader = glCreateShader(stage);
+    glShaderSource(shader, 3, parts, NULL);
+    glCompileShader(shader);
+    GLint ok = 0;
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
+    if (ok) return shader;
+    char log[300] = "";
+    glGetShaderInfoLog(shader, sizeof log, NULL, log);
+    prom_fail(error, PROM_ERR_UNSUPPORTED, "the GL driver rejects a shader: %s", log);
+    glDeleteShader(shader);
+    return 0;
+}
+
+static GLuint link(GLuint vertex, GLuint fragment, prom_error *error)
+{
+    GLuint name = glCreateProgram();
+    glAttachShader(name, vertex);
+    glAttachShader(name, fragment);
+    glLinkProgram(name);
+    GLint ok = 0;
+    glGetProgramiv(name, GL_LINK_STATUS, &ok);
+    if (ok) return name;
+    char log[300] = "";
+    glGetProgramInfoLog(name, sizeof log, NULL, log);
+    prom_fail(error, PROM_ERR_UNSUPPORTED, "the GL driver cannot link a shader: %s", log);
+    glDeleteProgram(name);
+    return 0;
+}
+
+static prom_status build(program *out, pipeline p, look l, prom_error *error)
+{
+    char prefix[160];
+    snprintf(prefix, sizeof prefix,
+             "#version 450 core\n#define PIPELINE_%s\n#define LOOK_%s\n%s", pipeline_names[p],
+             look_names[l], p == PIPELINE_BLENDED ? "#define WITHOUT_ID\n" : "");
+    GLuint vertex = compile(GL_VERTEX_SHADER, prefix, prom_glsl_mesh_vert, error);
+    if (!vertex) return PROM_ERR_UNSUPPORTED;
+    GLuint fragment = compile(GL_FRAGMENT_SHADER, prefix, prom_glsl_mesh_frag, error);
+    if (fragment) out->name = link(vertex, fragment, error);
+    glDeleteShader(vertex);
+    glDeleteShader(fragment);
+    return out->name ? PROM_OK : PROM_ERR_UNSUPPORTED;
+}
+
+prom_status programs_init(programs *all, prom_error *error)
+{
+    for (pipeline p = 0; p < PIPELINE_COUNT; p++)
+        for (look l = 0; l < LOOK_COUNT; l++) {
+            if (canonical(p, l) != p) continue;
+            prom_status status = build(&all->table[p][l], p, l, error);
+            if (status) return status;
+        }
+    return PROM_OK;
+}
+
+void programs_finish(programs *all)
+{
+    for (pipeline p = 0; p < PIPELINE_COUNT; p++)
+        for (look l = 0; l < LOOK_COUNT; l++) glDeleteProgram(all->table[p][l].name);
+    *all = (programs){0};
+}
+
+look look_of_output(prom_output output)
+{
+    return output == PROM_OUTPUT_NORMAL ? LOOK_NORMAL
+           : output == PROM_OUTPUT_TINT ? LOOK_TINT
+                                        : LOOK_COLOR;
+}
+
+program *programs_get(programs *all, pipeline p, look l)
+{
+    return &all->table[canonical(p, l)][l];
+}
