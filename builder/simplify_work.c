@@ -1,5 +1,7 @@
 #include "builder/simplify_work.h"
 
+#include "builder/simplify_sides.h"
+
 #include <assert.h>
 #include <math.h>
 #include <meshoptimizer.h>
@@ -107,53 +109,6 @@ static void find_places(prom_work *work)
     prom_free(keys);
 }
 
-// A triangle's places, turned so that the smallest is first: equal triangles, equal triples.
-static void triple_of(const prom_work *work, uint32_t triangle, uint32_t triple[3])
-{
-    const uint32_t *t = work->indices.data + triangle * 3;
-    uint32_t p[3];
-    for (int k = 0; k < 3; k++) p[k] = work->place.data[t[k]];
-    int low = p[0] < p[1] ? (p[0] < p[2] ? 0 : 2) : (p[1] < p[2] ? 1 : 2);
-    for (int k = 0; k < 3; k++) triple[k] = p[(low + k) % 3];
-}
-
-static uint32_t triple_hash(uint32_t low, uint32_t a, uint32_t b)
-{
-    // The other two unordered: both windings must land in the same chain.
-    uint64_t h = low * 0x9E3779B97F4A7C15u ^ ((uint64_t)a + b) * 0xC2B2AE3D27D4EB4Fu ^
-                 (uint64_t)(a ^ b) * 0x165667B19E3779F9u;
-    return (uint32_t)(h >> 32) ^ (uint32_t)h;
-}
-
-enum { FACE_KEEP, FACE_DROP, FACE_DOUBLE };
-
-// Drops repeated triangles; of a triangle and its back side the first stays, marked.
-static void mark_back_sides(prom_work *work, uint8_t *marks)
-{
-    uint32_t triangles = (uint32_t)(work->indices.count / 3);
-    uint32_t size = 16;
-    while (size < triangles * 2) size *= 2;
-    uint32_t *table = prom_calloc(size, sizeof *table);
-    for (uint32_t t = 0; t < triangles; t++) {
-        uint32_t me[3], other[3];
-        triple_of(work, t, me);
-        uint32_t slot = triple_hash(me[0], me[1], me[2]) & (size - 1);
-        for (; table[slot]; slot = (slot + 1) & (size - 1)) {
-            triple_of(work, table[slot] - 1, other);
-            if (me[0] != other[0]) continue;
-            bool same = me[1] == other[1] && me[2] == other[2];
-            bool back = me[1] == other[2] && me[2] == other[1];
-            if (back) marks[table[slot] - 1] = FACE_DOUBLE;
-            if (same || back) {
-                marks[t] = FACE_DROP;
-                break;
-            }
-        }
-        if (marks[t] != FACE_DROP) table[slot] = t + 1;
-    }
-    prom_free(table);
-}
-
 // Gives triangles with a back side vertices of their own and removes the dropped ones.
 static void apply_marks(prom_work *work, const uint8_t *marks)
 {
@@ -163,11 +118,11 @@ static void apply_marks(prom_work *work, const uint8_t *marks)
     memset(clone, 0xff, (size_t)base * sizeof *clone);
     work->triangles = 0;
     for (uint32_t t = 0; t < triangles; t++) {
-        if (marks[t] == FACE_DROP) continue;
-        work->triangles += marks[t] == FACE_DOUBLE ? 2 : 1;
+        if (marks[t] == PROM_SIDE_DROP) continue;
+        work->triangles += marks[t] == PROM_SIDE_DOUBLE ? 2 : 1;
         for (uint32_t k = 0; k < 3; k++) {
             uint32_t v = work->indices.data[t * 3 + k];
-            if (marks[t] == FACE_DOUBLE) {
+            if (marks[t] == PROM_SIDE_DOUBLE) {
                 if (clone[v] == PROM_NONE) {
                     clone[v] = (uint32_t)work->vertices.count;
                     prom_vertex copy = work->vertices.data[v];
@@ -197,7 +152,7 @@ void prom_work_init(prom_work *work, const prom_mesh *mesh)
     prom_free(keys);
     find_places(work);
     uint8_t *marks = prom_calloc(count / 3, 1);
-    mark_back_sides(work, marks);
+    prom_work_mark_sides(work, marks);
     apply_marks(work, marks);
     prom_free(marks);
     work->base_count = (uint32_t)work->vertices.count;
