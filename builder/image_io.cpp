@@ -1,0 +1,318 @@
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+extern "C" {
+#include "builder/file_io.h"
+#include "builder/image_io.h"
+#include "metaobj/base/alloc.h"
+#include "metaobj/base/math.h"
+}
+
+using namespace OIIO;
+
+namespace
+{
+
+// A picture beyond this is taken for a broken header (by taste: 16K x 16K).
+constexpr int max_side = 16384;
+constexpr uint64_t max_pixels = 1ull << 28;
+constexpr uint64_t max_file_bytes = 1ull << 30;
+
+bool starts(const uint8_t *data, size_t bytes, size_t at, const char *magic, size_t length)
+{
+    return bytes >= at + length && std::memcmp(data + at, magic, length) == 0;
+}
+
+// TGA has no magic: the header's fields must be possible ones.
+bool is_tga(const uint8_t *d, size_t bytes)
+{
+    if (bytes < 18 || d[1] > 1) return false;
+    int type = d[2] & ~8;
+    if ((d[2] & ~11) || type < 1 || type > 3 || (type == 1 && d[1] != 1)) return false;
+    int bits = d[16];
+    bool depth = bits == 8 || bits == 15 || bits == 16 || bits == 24 || bits == 32;
+    return depth && (d[12] | d[13]) && (d[14] | d[15]);
+}
+
+// The reader by what the data are, never by the file's ending: many decoders crash when fed a
+// foreign format. NULL when unknown.
+const char *format_of(const uint8_t *d, size_t n)
+{
+    static const struct {
+        size_t at;
+        const char *magic;
+        size_t length;
+        const char *format;
+    } table[] = {
+        {0, "\x89PNG\r\n\x1a\n", 8, "png"},
+        {0, "\xff\xd8\xff", 3, "jpeg"},
+        {0, "II*\0", 4, "tiff"},
+        {0, "MM\0*", 4, "tiff"},
+        {0, "DDS ", 4, "dds"},
+        {0, "GIF8", 4, "gif"},
+        {0, "BM", 2, "bmp"},
+        {8, "WEBP", 4, "webp"},
+        {0, "#?", 2, "hdr"},
+        {0, "8BPS", 4, "psd"},
+        {0, "\x76\x2f\x31\x01", 4, "openexr"},
+    };
+    for (const auto &row : table)
+        if (starts(d, n, row.at, row.magic, row.length)) return row.format;
+    if (n > 2 && d[0] == 'P' && d[1] >= '1' && d[1] <= '6' && std::strchr(" \t\r\n", d[2]))
+        return "pnm";
+    return is_tga(d, n) ? "targa" : nullptr;
+}
+
+std::string one_line(std::string text)
+{
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    while (!text.empty() && text.back() == ' ') text.pop_back();
+    return text.empty() ? "unknown reason" : text;
+}
+
+prom_status broken(prom_error *error, const char *name, const std::string &why)
+{
+    return prom_fail(error, PROM_ERR_INPUT, "%s: the picture cannot be read: %s", name,
+                     one_line(why).c_str());
+}
+
+// Interleaved channels of the file -> RGBA floats in [0,1] as stored.
+void expand(const float *in, int channels, size_t count, float *out)
+{
+    for (size_t i = 0; i < count; i++, in += channels, out += 4) {
+        bool grey = channels < 3;
+        for (int c = 0; c < 3; c++) out[c] = grey ? in[0] : in[c];
+        out[3] = channels == 2 ? in[1] : channels == 4 ? in[3] : 1.0f;
+        for (int c = 0; c < 4; c++) out[c] = std::isfinite(out[c]) ? out[c] : 0.0f;
+    }
+}
+
+void expand8(const uint8_t *in, int channels, size_t count, uint8_t *out)
+{
+    for (size_t i = 0; i < count; i++, in += channels, out += 4) {
+        bool grey = channels < 3;
+        for (int c = 0; c < 3; c++) out[c] = grey ? in[0] : in[c];
+        out[3] = channels == 2 ? in[1] : channels == 4 ? in[3] : 255;
+    }
+}
+
+// How much a texel's colour counts in a mean: its alpha, with a little for empty texels, so
+// that a picture whose alpha is later ignored keeps the colours there.
+float weight_of(float alpha)
+{
+    return alpha * (254.0f / 255.0f) + 1.0f / 255.0f;
+}
+
+// Reduces in linear light, colours weighted by alpha. `rgba` is replaced.
+std::string reduce(std::vector<uint8_t> &rgba, int &width, int &height, int max_px)
+{
+    double scale = double(max_px) / std::max(width, height);
+    int w = std::clamp(int(std::lround(width * scale)), 1, max_px);
+    int h = std::clamp(int(std::lround(height * scale)), 1, max_px);
+    std::vector<float> linear(rgba.size());
+    for (size_t i = 0; i < rgba.size(); i += 4) {
+        float weight = weight_of(float(rgba[i + 3]) / 255.0f);
+        for (size_t c = 0; c < 3; c++)
+            linear[i + c] = prom_srgb8_to_linear(rgba[i + c]) * weight;
+        linear[i + 3] = weight;
+    }
+    std::vector<uint8_t>().swap(rgba);
+    ImageBuf source(ImageSpec(width, height, 4, TypeDesc::FLOAT), linear.data());
+    std::vector<float> small(size_t(w) * size_t(h) * 4);
+    ImageBuf target(ImageSpec(w, h, 4, TypeDesc::FLOAT), small.data());
+    // One thread: the library's own pool does not survive a fork.
+    if (!ImageBufAlgo::resize(target, source, "triangle", 2.0f, ROI::All(), 1))
+        return target.geterror();
+    rgba.resize(small.size());
+    for (size_t i = 0; i < small.size(); i += 4) {
+        float weight = std::max(small[i + 3], 1.0f / 255.0f);
+        for (size_t c = 0; c < 3; c++)
+            rgba[i + c] = prom_linear_to_srgb8(std::clamp(small[i + c] / weight, 0.0f, 1.0f));
+        float alpha = (weight - 1.0f / 255.0f) * (255.0f / 254.0f);
+        rgba[i + 3] = uint8_t(std::lround(std::clamp(alpha, 0.0f, 1.0f) * 255.0f));
+    }
+    width = w;
+    height = h;
+    return "";
+}
+
+std::string read_pixels(ImageInput &input, const ImageSpec &spec, std::vector<uint8_t> &rgba)
+{
+    int channels = std::min(spec.nchannels, 4);
+    size_t count = size_t(spec.width) * size_t(spec.height);
+    rgba.resize(count * 4);
+    // Formats that store floats store linear light.
+    if (spec.format.is_floating_point()) {
+        std::vector<float> raw(count * size_t(channels)), wide(count * 4);
+        if (!input.read_image(0, 0, 0, channels, TypeDesc::FLOAT, raw.data()))
+            return input.geterror();
+        expand(raw.data(), channels, count, wide.data());
+        for (size_t i = 0; i < wide.size(); i++) {
+            float v = std::clamp(wide[i], 0.0f, 1.0f);
+            rgba[i] = i % 4 == 3 ? uint8_t(std::lround(v * 255.0f)) : prom_linear_to_srgb8(v);
+        }
+        return "";
+    }
+    std::vector<uint8_t> raw(count * size_t(channels));
+    if (!input.read_image(0, 0, 0, channels, TypeDesc::UINT8, raw.data()))
+        return input.geterror();
+    expand8(raw.data(), channels, count, rgba.data());
+    return "";
+}
+
+std::string check_spec(const ImageSpec &spec)
+{
+    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1)
+        return "it has no two-dimensional picture";
+    if (spec.width > max_side || spec.height > max_side ||
+        uint64_t(spec.width) * uint64_t(spec.height) > max_pixels || spec.nchannels > 64)
+        return "it claims " + std::to_string(spec.width) + "x" + std::to_string(spec.height) +
+               " pixels; at most 16384x16384 are read";
+    return "";
+}
+
+prom_status decode(const uint8_t *data, size_t bytes, const char *name, uint32_t max_px,
+                   uint32_t *width, uint32_t *height, uint8_t **rgba, prom_error *error)
+{
+    const char *format = format_of(data, bytes);
+    if (!format) return broken(error, name, "it is of no known picture format");
+    auto input = ImageInput::create(format);
+    if (!input) {
+        (void)OIIO::geterror();
+        return broken(error, name, std::string("this build reads no ") + format);
+    }
+    input->threads(1);
+    ImageSpec config, spec;
+    config["oiio:UnassociatedAlpha"] = 1;
+    Filesystem::IOMemReader memory(data, bytes);
+    bool from_memory = input->supports("ioproxy") && input->set_ioproxy(&memory);
+    std::string file = std::string("picture.") + format, temporary;
+    if (!from_memory) { // the few readers that insist on a file get one
+        char path[] = "/tmp/promenade-XXXXXX";
+        int fd = mkstemp(path);
+        if (fd < 0) return broken(error, name, "no temporary file could be made");
+        file = temporary = path;
+        bool written = write(fd, data, bytes) == ssize_t(bytes);
+        close(fd);
+        if (!written) {
+            unlink(path);
+            return broken(error, name, "no temporary file could be written");
+        }
+    }
+    bool open = input->open(file, spec, config);
+    if (!temporary.empty()) unlink(temporary.c_str());
+    if (!open) return broken(error, name, input->geterror());
+    std::string why = check_spec(spec);
+    std::vector<uint8_t> pixels;
+    if (why.empty()) why = read_pixels(*input, spec, pixels);
+    input->close();
+    int w = spec.width, h = spec.height;
+    if (why.empty() && uint32_t(std::max(w, h)) > max_px)
+        why = reduce(pixels, w, h, int(max_px));
+    if (!why.empty()) return broken(error, name, why);
+    *rgba = static_cast<uint8_t *>(prom_alloc(pixels.size(), 1));
+    std::memcpy(*rgba, pixels.data(), pixels.size());
+    *width = uint32_t(w);
+    *height = uint32_t(h);
+    return PROM_OK;
+}
+
+bool encode(uint32_t width, uint32_t height, int channels, const uint8_t *pixels,
+            std::vector<unsigned char> &bytes, std::string &why)
+{
+    auto output = ImageOutput::create("png");
+    if (!output) {
+        why = OIIO::geterror();
+        return false;
+    }
+    ImageSpec spec(int(width), int(height), channels, TypeDesc::UINT8);
+    Filesystem::IOVecOutput memory(bytes);
+    spec["oiio:UnassociatedAlpha"] = 1;
+    spec["oiio:ColorSpace"] = "sRGB";
+    output->threads(1);
+    bool good = output->set_ioproxy(&memory) && output->open("picture.png", spec) &&
+                output->write_image(TypeDesc::UINT8, pixels) && output->close();
+    if (!good) why = one_line(output->geterror());
+    return good;
+}
+
+// A C++ exception must not leave this file.
+template <class F> prom_status guarded(prom_error *error, const char *name, F body)
+{
+    try {
+        return body();
+    } catch (const std::bad_alloc &) {
+        return broken(error, name, "out of memory");
+    } catch (const std::exception &e) {
+        return broken(error, name, e.what());
+    } catch (...) {
+        return broken(error, name, "the decoder failed");
+    }
+}
+
+} // namespace
+
+prom_status prom_image_read_memory(const void *data, size_t bytes, const char *name,
+                                   uint32_t max_px, uint32_t *width, uint32_t *height,
+                                   uint8_t **rgba, prom_error *error)
+{
+    return guarded(error, name, [&] {
+        return decode(static_cast<const uint8_t *>(data), bytes, name,
+                      std::clamp(max_px, 1u, uint32_t(max_side)), width, height, rgba, error);
+    });
+}
+
+prom_status prom_image_read(const char *path, uint32_t max_px, uint32_t *width,
+                            uint32_t *height, uint8_t **rgba, prom_error *error)
+{
+    return guarded(error, path, [&] {
+        prom_bytes file;
+        prom_status status = prom_file_read(path, max_file_bytes, &file, error);
+        if (status) return status;
+        status = prom_image_read_memory(file.data, file.count, path, max_px, width, height,
+                                        rgba, error);
+        prom_free(file.data);
+        return status;
+    });
+}
+
+prom_status prom_image_encode_png(uint32_t width, uint32_t height, int channels,
+                                  const uint8_t *pixels, uint8_t **png, size_t *bytes,
+                                  prom_error *error)
+{
+    return guarded(error, "PNG", [&] {
+        std::vector<unsigned char> data;
+        std::string why;
+        if (!encode(width, height, channels, pixels, data, why))
+            return prom_fail(error, PROM_ERR_OUTPUT, "a %ux%u PNG cannot be encoded: %s", width,
+                             height, why.c_str());
+        *png = static_cast<uint8_t *>(prom_alloc(data.size(), 1));
+        std::memcpy(*png, data.data(), data.size());
+        *bytes = data.size();
+        return PROM_OK;
+    });
+}
+
+prom_status prom_image_write_png(const char *path, uint32_t width, uint32_t height,
+                                 int channels, const uint8_t *pixels, prom_error *error)
+{
+    uint8_t *png = nullptr;
+    size_t bytes = 0;
+    prom_status status =
+        prom_image_encode_png(width, height, channels, pixels, &png, &bytes, error);
+    if (status) return status;
+    prom_bytes part = {png, bytes};
+    status = prom_file_write(path, &part, 1, error);
+    prom_free(png);
+    return status;
+}
