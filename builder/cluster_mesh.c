@@ -126,7 +126,10 @@ bool prom_cluster_mesh_make(const prom_cluster_piece *pieces, size_t count, bool
     prom_mesh merged;
     *out = (prom_mesh){0};
     *error = 0;
-    if (!merge(pieces, count, &merged, error)) return false;
+    if (!merge(pieces, count, &merged, error)) {
+        *error = 0;
+        return false;
+    }
     if (surface) {
         prom_box box = prom_mesh_bounds(&merged);
         prom_mesh_weld_surface(&merged, WELD_TOLERANCE * prom_box_diagonal(&box) / 2);
