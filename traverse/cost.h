@@ -8,24 +8,28 @@
 
 typedef struct prom_cost_model {
     double fixed_ms, draw_ms, vertex_ms, triangle_ms, pixel_ms[PROM_SHADE_COUNT];
-    double overdraw;     // shaded pixels per footprint pixel of a cut; >= 1, 1 when unknown
-    double mean_error;   // of the fit: mean |predicted/actual - 1|
-    double worst_under;  // greatest actual/predicted - 1
-    double margin;       // part of the budget kept back for noise, from repeats at calibration
+    double overdraw;    // shaded pixels per footprint pixel of a cut; >= 1, 1 when unknown
+    double mean_error;  // of the fit: mean |predicted/actual - 1|
+    double worst_under; // greatest actual/predicted - 1
+    double margin;      // part of the budget kept back for noise, from repeats at calibration
     uint32_t sample_count;
     char renderer[128];
 } prom_cost_model;
 
 // Non-negative least squares with 1/T weights (relative errors). Fails with fewer samples than
-// coefficients or a non-finite sample.
-prom_status prom_cost_fit(const prom_cost_sample *samples, size_t count,
-                          prom_cost_model *model, prom_error *error);
+// coefficients (of features that occur at all) or a sample that is not finite. Sets every field:
+// errors are measured on samples that the fit had not seen where there are enough; shading kinds
+// without samples cost what textured pixels do; overdraw 1, margin 0.1 and an empty renderer are
+// for the caller to replace.
+prom_status prom_cost_fit(const prom_cost_sample *samples, size_t count, prom_cost_model *model,
+                          prom_error *error);
 double prom_cost_predict(const prom_cost_model *model, const prom_cost_features *features);
 // A representation that covers `pixels` pixels in this view (overdraw applied inside).
 double prom_cost_of_rep(const prom_cost_model *model, const prom_representation *rep,
                         double pixels);
 
-// JSON profile files (docs/FORMAT.md). Loading checks every number.
+// JSON profile files (docs/FORMAT.md). Saving replaces the file at once or not at all. Loading
+// checks every key and number; on failure *model stays as it was.
 prom_status prom_cost_save(const prom_cost_model *model, const char *path, prom_error *error);
 prom_status prom_cost_load(const char *path, prom_cost_model *model, prom_error *error);
 // The profile's place for a renderer: $XDG_CACHE_HOME/promenade/<renderer>-<W>x<H>.json (or

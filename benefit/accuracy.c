@@ -1,0 +1,127 @@
+#include "benefit/accuracy.h"
+
+#include <assert.h>
+#include <math.h>
+
+static float near_factor(float near_k, float e_px)
+{
+    return 1.0f / (1.0f + near_k * e_px);
+}
+
+float prom_accuracy(const prom_model *model, uint32_t rep, uint32_t dir, float size_px,
+                    float radius)
+{
+    assert(rep < model->rep_count && dir < PROM_DIRS);
+    const uint8_t *row = model->accuracy[rep][dir];
+    if (!(size_px > PROM_SIZE_MIN_PX)) return (float)row[0] / 255.0f;
+    if (size_px < PROM_SIZE_MAX_PX) {
+        float position = log2f(size_px / PROM_SIZE_MIN_PX);
+        int bin = (int)position;
+        if (bin > PROM_SIZES - 2) bin = PROM_SIZES - 2;
+        float t = position - (float)bin;
+        return ((1.0f - t) * (float)row[bin] + t * (float)row[bin + 1]) / 255.0f;
+    }
+    const prom_representation *r = &model->reps[rep];
+    float largest = (float)row[PROM_SIZES - 1] / 255.0f;
+    if (r->kind != PROM_REP_MESH || !(radius > 0.0f)) return largest;
+    float per_px = r->error / (2.0f * radius);
+    return largest * near_factor(r->near_k, per_px * size_px) /
+           near_factor(r->near_k, per_px * PROM_SIZE_MAX_PX);
+}
+
+float prom_footprint_px(const prom_model *model, uint32_t prototype, uint32_t dir,
+                        float size_px)
+{
+    assert(prototype < model->prototype_count && dir < PROM_DIRS);
+    const float quarter_pi = 0.78539816f;
+    return (float)model->coverage[prototype][dir] / 65535.0f * quarter_pi * size_px * size_px;
+}
+
+void prom_split_pixels(const prom_model *model, uint32_t prototype, uint32_t dir, float pixels,
+                       const float *in_view, float *px)
+{
+    assert(prototype < model->prototype_count && dir < PROM_DIRS);
+    const prom_prototype *p = &model->prototypes[prototype];
+    const uint16_t(*shares)[PROM_DIRS] =
+        p->first_share == PROM_NONE ? NULL : model->shares + p->first_share;
+    double total = 0.0;
+    if (shares) {
+        for (uint32_t c = 0; c < p->child_count; c++) {
+            px[c] = (float)shares[c][dir] * in_view[c];
+            total += px[c];
+        }
+    }
+    if (!(total > 0.0)) {
+        for (uint32_t c = 0; c < p->child_count; c++) {
+            px[c] = in_view[c] > 0.0f ? 1.0f : 0.0f;
+            total += px[c];
+        }
+    }
+    float factor = total > 0.0 ? (float)(pixels / total) : 0.0f;
+    for (uint32_t c = 0; c < p->child_count; c++) px[c] *= factor;
+}
+
+// ---- the near-field fit
+
+typedef struct near_rows {
+    const float *e_px, *accuracy;
+    size_t count;
+} near_rows;
+
+static bool usable(const near_rows *rows, size_t i)
+{
+    return isfinite(rows->e_px[i]) && rows->e_px[i] >= 0.0f && isfinite(rows->accuracy[i]);
+}
+
+static double squared_error(const near_rows *rows, double near_k)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < rows->count; i++) {
+        if (!usable(rows, i)) continue;
+        double d = rows->accuracy[i] - 1.0 / (1.0 + near_k * rows->e_px[i]);
+        sum += d * d;
+    }
+    return sum;
+}
+
+// Golden-section search for the least squared error over log(near_k) in [low, high].
+static double refine(const near_rows *rows, double low, double high)
+{
+    const double golden = 0.6180339887498949;
+    double a = high - golden * (high - low), b = low + golden * (high - low);
+    double fa = squared_error(rows, exp(a)), fb = squared_error(rows, exp(b));
+    for (int i = 0; i < 40; i++) {
+        if (fa <= fb) {
+            high = b, b = a, fb = fa;
+            a = high - golden * (high - low);
+            fa = squared_error(rows, exp(a));
+        } else {
+            low = a, a = b, fa = fb;
+            b = low + golden * (high - low);
+            fb = squared_error(rows, exp(b));
+        }
+    }
+    return exp(0.5 * (low + high));
+}
+
+float prom_accuracy_fit_near(const float *e_px, const float *accuracy, size_t count)
+{
+    const near_rows rows = {e_px, accuracy, count};
+    double e_max = 0.0;
+    for (size_t i = 0; i < count; i++)
+        if (usable(&rows, i) && e_px[i] > e_max) e_max = e_px[i];
+    if (!(e_max > 0.0)) return 0.0f;
+
+    // A scan first, since the error has several valleys in near_k where rows contradict each
+    // other. The range covers accuracies of 0.9999 to 0.0001 at the largest e_px.
+    enum { STEPS = 72 };
+    const double low = log(1e-4 / e_max), step = (log(1e4 / e_max) - low) / STEPS;
+    int best = 0;
+    double least = INFINITY;
+    for (int i = 0; i <= STEPS; i++) {
+        double error = squared_error(&rows, exp(low + i * step));
+        if (error < least) least = error, best = i;
+    }
+    double k = refine(&rows, low + (best - 1) * step, low + (best + 1) * step);
+    return squared_error(&rows, k) < squared_error(&rows, 0.0) ? (float)k : 0.0f;
+}

@@ -1,0 +1,172 @@
+// Greedy by marginal benefit per cost, from the cheapest cut upwards.
+//
+// The cheapest cut is set aside first; then steps of the chains (chain.h) are bought in one
+// global order of falling slope, until one does not fit. If that step opens a cluster, the
+// cluster is opened with as few refinements as make it worth while, and the buying goes on with
+// its children; else it ends, for skipping on makes levels flip. More budget so always buys the
+// same steps and more.
+#include "traverse/chain.h"
+#include "traverse/evaluate.h"
+#include "traverse/selectors.h"
+
+// A node of the cut with its place in a chain.
+typedef struct placed {
+    uint32_t node;
+    uint8_t place;
+} placed;
+
+typedef struct greedy_state {
+    prom_eval eval;
+    prom_chains chains;
+    prom_heap heap; // by the slope of the next step
+    uint8_t *place; // per visited node: its state in its chain
+    bool *opened;   // per visited node: its children stand for it
+    placed *stack;
+} greedy_state;
+
+static void *create(const prom_model *model)
+{
+    greedy_state *g = prom_calloc(1, sizeof *g);
+    prom_eval_init(&g->eval, model);
+    prom_chains_init(&g->chains, &g->eval);
+    g->heap.entries = prom_alloc(model->tree_count, sizeof *g->heap.entries);
+    g->place = prom_alloc(model->tree_count, sizeof *g->place);
+    g->opened = prom_alloc(model->tree_count, sizeof *g->opened);
+    g->stack = prom_alloc(model->tree_count, sizeof *g->stack);
+    return g;
+}
+
+static void destroy(void *pointer)
+{
+    greedy_state *g = pointer;
+    if (!g) return;
+    prom_chains_finish(&g->chains);
+    prom_eval_finish(&g->eval);
+    prom_free(g->heap.entries);
+    prom_free(g->place);
+    prom_free(g->opened);
+    prom_free(g->stack);
+    prom_free(g);
+}
+
+static const prom_chain_state *states_of(const greedy_state *g, uint32_t node)
+{
+    return &g->chains.states[g->chains.nodes[node].first];
+}
+
+// Pushes the children of a node that is opened to `limit`, each at its place.
+static uint32_t push_children(const greedy_state *g, uint32_t node,
+                              const prom_chain_limit *limit, uint32_t depth)
+{
+    const prom_model *m = g->eval.model;
+    for (uint32_t c = m->child_count[node]; c-- > 0;) {
+        uint32_t child = m->first_child[node] + c;
+        if (g->eval.nodes[child].culled || !g->chains.nodes[child].count) continue;
+        g->stack[depth++] = (placed){child, prom_chain_child_place(&g->chains, child, limit)};
+    }
+    return depth;
+}
+
+// Puts the nodes on the stack into the cut. Where nothing but openings lies ahead in a node's
+// chain, its children take over: their own chains are finer.
+static void place_stacked(greedy_state *g, uint32_t depth)
+{
+    while (depth) {
+        placed p = g->stack[--depth];
+        const prom_chain *chain = &g->chains.nodes[p.node];
+        const prom_chain_state *s = states_of(g, p.node);
+        g->place[p.node] = p.place;
+        g->opened[p.node] = p.place >= chain->own_end;
+        if (g->opened[p.node])
+            depth = push_children(g, p.node, &s[p.place].limit, depth);
+        else if (p.place + 1 < chain->count)
+            prom_heap_push(&g->heap, s[p.place + 1].slope, p.node);
+    }
+}
+
+static void place_node(greedy_state *g, uint32_t node, uint8_t place)
+{
+    g->stack[0] = (placed){node, place};
+    place_stacked(g, 1);
+}
+
+// Opens a node whose next step is too dear with the least that is worth while.
+static bool open_partly(greedy_state *g, uint32_t node, double *total, double budget)
+{
+    const prom_chain_state *now = &states_of(g, node)[g->place[node]];
+    prom_chain_state least;
+    if (now[1].option != PROM_NONE) return false;
+    if (!prom_chain_least_opening(&g->chains, node, now->benefit, &least)) return false;
+    if (*total + (least.cost - now->cost) > budget) return false;
+    *total += least.cost - now->cost;
+    prom_heap_pop(&g->heap);
+    g->opened[node] = true;
+    place_stacked(g, push_children(g, node, &least.limit, 0));
+    return true;
+}
+
+static void buy_steps(greedy_state *g, double total, double budget)
+{
+    while (g->heap.count) {
+        uint32_t node = g->heap.entries[0].node;
+        const prom_chain_state *now = &states_of(g, node)[g->place[node]];
+        double change = now[1].cost - now->cost;
+        if (total + change <= budget) {
+            total += change;
+            prom_heap_pop(&g->heap);
+            place_node(g, node, (uint8_t)(g->place[node] + 1));
+        } else if (!open_partly(g, node, &total, budget)) {
+            return;
+        }
+    }
+}
+
+static void emit_cut(greedy_state *g, prom_cut *cut)
+{
+    const prom_model *m = g->eval.model;
+    uint32_t depth = 1;
+    g->stack[0] = (placed){0, g->place[0]};
+    while (depth) {
+        placed p = g->stack[--depth];
+        const prom_chain_state *s = &states_of(g, p.node)[p.place];
+        if (!g->opened[p.node]) {
+            if (s->option != PROM_NONE)
+                prom_eval_emit(&g->eval, p.node, s->option, cut);
+            else
+                depth = push_children(g, p.node, &s->limit, depth);
+            continue;
+        }
+        for (uint32_t c = m->child_count[p.node]; c-- > 0;) {
+            uint32_t child = m->first_child[p.node] + c;
+            if (!g->eval.nodes[child].culled && g->chains.nodes[child].count)
+                g->stack[depth++] = (placed){child, g->place[child]};
+        }
+    }
+}
+
+static void select_greedy(void *pointer, const prom_selection *selection, prom_cut *cut)
+{
+    greedy_state *g = pointer;
+    prom_eval *eval = &g->eval;
+    prom_eval_run(eval, selection, prom_eval_open_visible, eval);
+    prom_eval_begin_cut(eval, cut);
+    if (!eval->nodes[0].culled) {
+        prom_chains_build(&g->chains);
+        for (uint32_t i = 0; i < eval->visited_count; i++) g->opened[eval->visited[i]] = false;
+        g->heap.count = 0;
+        place_node(g, 0, 0);
+        // Rounding of the running sum must not lift the finished cut over the budget.
+        buy_steps(g, eval->fixed_ms + eval->nodes[0].cmin, selection->budget_ms * (1.0 - 1e-9));
+        emit_cut(g, cut);
+    }
+    prom_eval_end_cut(eval, cut);
+}
+
+const prom_selector_class prom_select_greedy = {
+    .name = "greedy",
+    .summary = "marginal benefit per cost, from the cheapest cut upwards",
+    .budgeted = true,
+    .create = create,
+    .destroy = destroy,
+    .select = select_greedy,
+};

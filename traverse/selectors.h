@@ -1,0 +1,13 @@
+// The selectors, one source file each.
+#ifndef PROM_TRAVERSE_SELECTORS_H
+#define PROM_TRAVERSE_SELECTORS_H
+
+#include "traverse/selector.h"
+
+extern const prom_selector_class prom_select_meta;
+extern const prom_selector_class prom_select_greedy;
+extern const prom_selector_class prom_select_distance;
+extern const prom_selector_class prom_select_full;
+extern const prom_selector_class prom_select_coarsest;
+
+#endif
