@@ -1,0 +1,58 @@
+// Private to the container's reader: its state, and values taken row by row with checks.
+#ifndef PROM_METAOBJ_CONTAINER_READER_H
+#define PROM_METAOBJ_CONTAINER_READER_H
+
+#include "metaobj/container_schema.h"
+
+typedef struct prom_bulk_ref {
+    uint64_t first_chunk, content_hash;
+} prom_bulk_ref;
+
+struct prom_container {
+    sqlite3 *db;
+    char *path;
+    uint64_t file_bytes;
+    uint64_t rows[PROM_TABLE_HASHED], hash[PROM_TABLE_HASHED];
+    sqlite3_stmt *chunk;
+    prom_arena arena; // meta
+    uint32_t meta_count;
+    const char *(*meta)[2];
+    // Filled by prom_container_load_model.
+    uint32_t mesh_count, texture_count;
+    prom_bulk_ref *meshes, *textures;
+};
+
+// A row being read. Each take_ gives the next column; the first that is not as it should be
+// fills *error, and from then on all give 0.
+typedef struct prom_row_in {
+    prom_container *container;
+    sqlite3_stmt *statement;
+    prom_table table;
+    uint32_t id;
+    int column;
+    bool failed;
+    prom_error *error;
+} prom_row_in;
+
+int64_t prom_take_int(prom_row_in *row, int64_t least, int64_t most);
+uint32_t prom_take_u32(prom_row_in *row);
+uint32_t prom_take_index(prom_row_in *row); // PROM_NONE for NULL
+double prom_take_real(prom_row_in *row);
+void prom_take_reals(prom_row_in *row, double *values, int count);
+void prom_take_floats(prom_row_in *row, float *values, int count);
+float prom_take_limit(prom_row_in *row); // INFINITY for NULL
+// Valid until the row ends.
+const char *prom_take_text(prom_row_in *row);
+const void *prom_take_blob(prom_row_in *row, uint64_t bytes);
+// Marks the row as failed with a reason of the caller's.
+void prom_row_refuse(prom_row_in *row, const char *why);
+
+// Calls take(user, row) for every row of a table by id; checks that ids count from 0 and that
+// number and hash of the rows are those that the writer noted.
+prom_status prom_container_scan(prom_container *container, prom_table table,
+                                void (*take)(void *user, prom_row_in *row), void *user,
+                                prom_error *error);
+prom_status prom_container_fail_sqlite(prom_container *container, const char *table,
+                                       uint64_t row, prom_error *error);
+
+#endif

@@ -1,0 +1,155 @@
+// Meshes and textures from the container: chunks found, checked, decoded.
+#include "metaobj/container_reader.h"
+
+#include "metaobj/base/hash.h"
+
+static prom_status refuse(prom_container *c, const char *table, uint64_t row, const char *why,
+                          prom_error *error)
+{
+    return prom_fail(error, PROM_ERR_INPUT,
+                     "%s: table %s, row %llu: %s; the file is damaged: build it again", c->path,
+                     table, (unsigned long long)row, why);
+}
+
+// Steps to a chunk's row; the caller resets the statement.
+static prom_status find_chunk(prom_container *c, const char *columns, uint64_t id,
+                              sqlite3_stmt **statement, prom_error *error)
+{
+    if (!*statement) {
+        char *sql = prom_format("SELECT %s FROM chunk WHERE id=?", columns);
+        int rc = sqlite3_prepare_v2(c->db, sql, -1, statement, NULL);
+        prom_free(sql);
+        if (rc != SQLITE_OK) return prom_container_fail_sqlite(c, "chunk", id, error);
+    }
+    sqlite3_bind_int64(*statement, 1, (int64_t)id);
+    int rc = sqlite3_step(*statement);
+    if (rc == SQLITE_DONE) return refuse(c, "chunk", id, "the row is missing", error);
+    return rc == SQLITE_ROW ? PROM_OK : prom_container_fail_sqlite(c, "chunk", id, error);
+}
+
+// Before memory is taken: the chunks must be there and large enough for what they claim.
+static prom_status check_chunks(prom_container *c, const prom_stream *stream, uint64_t first,
+                                prom_error *error)
+{
+    prom_status status = PROM_OK;
+    sqlite3_stmt *statement = NULL;
+    for (uint64_t i = 0; i < prom_stream_chunks(stream) && !status; i++) {
+        uint64_t raw = prom_stream_chunk_count(stream, i) * stream->stride;
+        status = find_chunk(c, "codec,length(data)", first + i, &statement, error);
+        if (status) break;
+        int64_t codec = sqlite3_column_int64(statement, 0);
+        uint64_t bytes = (uint64_t)sqlite3_column_int64(statement, 1);
+        if (bytes < prom_codec_least_bytes(codec, raw))
+            status = refuse(c, "chunk", first + i, "it is too short for its data", error);
+        sqlite3_reset(statement);
+    }
+    sqlite3_finalize(statement);
+    return status;
+}
+
+static prom_status decode_chunk(prom_container *c, const prom_stream *stream, uint64_t id,
+                                void *out, uint64_t count, prom_error *error)
+{
+    prom_status status = find_chunk(c, "codec,checksum,data", id, &c->chunk, error);
+    if (!status) {
+        const void *data = sqlite3_column_blob(c->chunk, 2);
+        size_t bytes = (size_t)sqlite3_column_bytes(c->chunk, 2);
+        int64_t codec = sqlite3_column_int64(c->chunk, 0);
+        if (!data || sqlite3_column_type(c->chunk, 2) != SQLITE_BLOB)
+            status = refuse(c, "chunk", id, "its data cannot be read", error);
+        else if ((uint64_t)sqlite3_column_int64(c->chunk, 1) != prom_hash(data, bytes, 0))
+            status = refuse(c, "chunk", id, "its data do not match their checksum", error);
+        else if (!prom_chunk_decode(stream, codec, data, bytes, out, count))
+            status = refuse(c, "chunk", id, "its data cannot be decoded", error);
+    }
+    if (c->chunk) sqlite3_reset(c->chunk);
+    return status;
+}
+
+static prom_status decode_stream(prom_container *c, const prom_stream *stream, uint64_t first,
+                                 void *out, prom_error *error)
+{
+    uint8_t *bytes = out;
+    for (uint64_t i = 0; i < prom_stream_chunks(stream); i++) {
+        uint64_t count = prom_stream_chunk_count(stream, i);
+        prom_status status = decode_chunk(c, stream, first + i, bytes, count, error);
+        if (status) return status;
+        bytes += count * stream->stride;
+    }
+    return PROM_OK;
+}
+
+static prom_status wrong_id(prom_container *c, const char *table, uint32_t id,
+                            prom_error *error)
+{
+    return prom_fail(error, PROM_ERR_INPUT, "%s: table %s has no row %u for this model",
+                     c->path, table, id);
+}
+
+static prom_status decode_mesh(prom_container *c, const prom_bulk_ref *ref,
+                               const prom_stream streams[PROM_MESH_STREAMS], prom_mesh *mesh,
+                               prom_error *error)
+{
+    void *out[PROM_MESH_STREAMS] = {mesh->vertices, mesh->indices, mesh->submeshes};
+    uint64_t chunk = ref->first_chunk;
+    for (int s = 0; s < PROM_MESH_STREAMS; s++) {
+        prom_status status = decode_stream(c, &streams[s], chunk, out[s], error);
+        if (status) return status;
+        chunk += prom_stream_chunks(&streams[s]);
+    }
+    return PROM_OK;
+}
+
+prom_status prom_container_read_mesh(prom_container *container, const prom_model *model,
+                                     uint32_t id, prom_mesh *mesh, prom_error *error)
+{
+    *mesh = (prom_mesh){0};
+    prom_container *c = container;
+    if (id >= c->mesh_count || id >= model->mesh_count) return wrong_id(c, "mesh", id, error);
+    const prom_mesh_info *info = &model->meshes[id];
+    const prom_bulk_ref *ref = &c->meshes[id];
+    prom_stream streams[PROM_MESH_STREAMS];
+    prom_mesh_streams(info, streams);
+    uint64_t chunk = ref->first_chunk;
+    for (int s = 0; s < PROM_MESH_STREAMS; s++) {
+        prom_status status = check_chunks(c, &streams[s], chunk, error);
+        if (status) return status;
+        chunk += prom_stream_chunks(&streams[s]);
+    }
+    prom_mesh_init(mesh, info->vertex_count, info->index_count, info->submesh_count);
+    prom_status status = decode_mesh(c, ref, streams, mesh, error);
+    if (!status) {
+        const char *wrong = prom_mesh_check(mesh, model->material_count);
+        if (!wrong && prom_mesh_hash(mesh, 0) != ref->content_hash)
+            wrong = "its content does not match its hash";
+        if (wrong) status = refuse(c, "mesh", id, wrong, error);
+    }
+    if (status) prom_mesh_finish(mesh);
+    return status;
+}
+
+prom_status prom_container_read_texture(prom_container *container, const prom_model *model,
+                                        uint32_t id, prom_texture *texture, prom_error *error)
+{
+    *texture = (prom_texture){0};
+    prom_container *c = container;
+    if (id >= c->texture_count || id >= model->texture_count)
+        return wrong_id(c, "texture", id, error);
+    const prom_texture_info *i = &model->textures[id];
+    const prom_bulk_ref *ref = &c->textures[id];
+    prom_texture t = {i->kind, i->width, i->height, i->layers, i->levels, NULL};
+    size_t bytes = prom_texture_bytes(&t);
+    if (!bytes) return refuse(c, "texture", id, "its kind or size is out of range", error);
+    prom_stream stream = prom_texture_stream(bytes);
+    prom_status status = check_chunks(c, &stream, ref->first_chunk, error);
+    if (status) return status;
+    t.pixels = prom_alloc(bytes, 1);
+    status = decode_stream(c, &stream, ref->first_chunk, t.pixels, error);
+    if (!status && prom_texture_hash(&t, 0) != ref->content_hash)
+        status = refuse(c, "texture", id, "its content does not match its hash", error);
+    if (status)
+        prom_texture_finish(&t);
+    else
+        *texture = t;
+    return status;
+}

@@ -1,0 +1,209 @@
+// Writing a .prom container: the file's life from .part to its name, bulk data, meta and
+// stages.
+#include "metaobj/container_writer.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdio.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static prom_status fail_errno(prom_error *error, const char *what, const char *path)
+{
+    return prom_fail(error, PROM_ERR_OUTPUT, "cannot %s %s: %s", what, path, strerror(errno));
+}
+
+// Opens and locks the .part. Another build may finish and rename its .part between our open and
+// our lock; then the lock is on a file that has left the name, and we try again.
+static int lock_part(const char *part_path, prom_error *error)
+{
+    for (int attempt = 0; attempt < 100; attempt++) {
+        int fd = open(part_path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+        if (fd < 0) {
+            fail_errno(error, "write", part_path);
+            return -1;
+        }
+        if (flock(fd, LOCK_EX | LOCK_NB)) {
+            close(fd);
+            prom_fail(error, PROM_ERR_OUTPUT,
+                      "another build is writing %s; wait for it or choose another output",
+                      part_path);
+            return -1;
+        }
+        struct stat held, named;
+        if (!fstat(fd, &held) && !stat(part_path, &named) && held.st_ino == named.st_ino &&
+            held.st_dev == named.st_dev)
+            return fd;
+        close(fd);
+    }
+    prom_fail(error, PROM_ERR_OUTPUT, "cannot lock %s; is another build writing it?",
+              part_path);
+    return -1;
+}
+
+static void unlink_journal(const char *part_path)
+{
+    char *journal = prom_format("%s-journal", part_path);
+    unlink(journal);
+    prom_free(journal);
+}
+
+static prom_status open_database(prom_writer *w, prom_error *error)
+{
+    // Only now, under the lock, is a leftover known to belong to nobody.
+    unlink_journal(w->part_path);
+    if (ftruncate(w->lock_fd, 0)) return fail_errno(error, "write", w->part_path);
+    char *name = prom_sqlite_path(w->part_path);
+    int rc = sqlite3_open_v2(name, &w->db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, NULL);
+    prom_free(name);
+    if (rc != SQLITE_OK) return prom_writer_fail(w, error);
+    char setup[256];
+    snprintf(setup, sizeof setup,
+             "PRAGMA page_size=65536; PRAGMA journal_mode=DELETE; PRAGMA synchronous=OFF;"
+             "PRAGMA application_id=%d; PRAGMA user_version=%d;",
+             PROM_CONTAINER_APPLICATION_ID, PROM_CONTAINER_VERSION);
+    prom_status status = prom_writer_exec(w, setup, error);
+    if (!status) status = prom_writer_exec(w, "BEGIN", error);
+    for (int t = 0; t < PROM_TABLE_COUNT && !status; t++)
+        status = prom_writer_exec(w, prom_tables[t].create, error);
+    return status;
+}
+
+prom_writer *prom_writer_create(const char *path, prom_error *error)
+{
+    struct stat existing;
+    if (!*path || (!stat(path, &existing) && !S_ISREG(existing.st_mode))) {
+        prom_fail(error, PROM_ERR_OUTPUT, "cannot write '%s': it is no plain file", path);
+        return NULL;
+    }
+    prom_writer *w = prom_calloc(1, sizeof *w);
+    w->path = prom_strdup(path);
+    w->part_path = prom_format("%s.part", path);
+    w->lock_fd = lock_part(w->part_path, error);
+    if (w->lock_fd < 0 || open_database(w, error)) {
+        prom_writer_destroy(w);
+        return NULL;
+    }
+    return w;
+}
+
+static void close_database(prom_writer *w)
+{
+    for (int t = 0; t < PROM_TABLE_COUNT; t++) sqlite3_finalize(w->insert[t]);
+    memset(w->insert, 0, sizeof w->insert);
+    sqlite3_close(w->db);
+    w->db = NULL;
+}
+
+void prom_writer_destroy(prom_writer *writer)
+{
+    if (!writer) return;
+    close_database(writer);
+    if (writer->lock_fd >= 0) {
+        if (!writer->finished) {
+            unlink(writer->part_path);
+            unlink_journal(writer->part_path);
+        }
+        close(writer->lock_fd);
+    }
+    for (size_t i = 0; i < writer->meta.count; i++) {
+        prom_free(writer->meta.data[i].key);
+        prom_free(writer->meta.data[i].value);
+    }
+    prom_array_finish(&writer->meta);
+    prom_array_finish(&writer->meshes);
+    prom_array_finish(&writer->textures);
+    prom_array_finish(&writer->encoded);
+    prom_free(writer->path);
+    prom_free(writer->part_path);
+    prom_free(writer);
+}
+
+prom_status prom_writer_set_meta(prom_writer *writer, const char *key, const char *value,
+                                 prom_error *error)
+{
+    (void)error;
+    for (size_t i = 0; i < writer->meta.count; i++) {
+        prom_meta_entry *m = &writer->meta.data[i];
+        if (strcmp(m->key, key)) continue;
+        prom_free(m->value);
+        m->value = prom_strdup(value);
+        return PROM_OK;
+    }
+    prom_array_push(&writer->meta, (prom_meta_entry){prom_strdup(key), prom_strdup(value)});
+    return PROM_OK;
+}
+
+prom_status prom_writer_add_stage(prom_writer *writer, const char *name, uint64_t content_hash,
+                                  double ms, prom_error *error)
+{
+    prom_row_out row = prom_row_begin(writer, PROM_TABLE_STAGE);
+    prom_put_text(&row, name);
+    prom_put_int(&row, (int64_t)content_hash);
+    prom_put_real(&row, isfinite(ms) ? ms : 0);
+    prom_status status = prom_row_end(&row, error);
+    return status ? status : prom_writer_exec(writer, "COMMIT; BEGIN", error);
+}
+
+static prom_status write_meta(prom_writer *w, prom_error *error)
+{
+    for (size_t i = 0; i < w->meta.count; i++) {
+        prom_row_out row = prom_row_begin(w, PROM_TABLE_META);
+        prom_put_text(&row, w->meta.data[i].key);
+        prom_put_text(&row, w->meta.data[i].value);
+        prom_status status = prom_row_end(&row, error);
+        if (status) return status;
+    }
+    return PROM_OK;
+}
+
+static prom_status write_row_hashes(prom_writer *w, prom_error *error)
+{
+    for (int t = 0; t < PROM_TABLE_HASHED; t++) {
+        uint64_t rows, hash;
+        if (prom_table_hash(w->db, (prom_table)t, NULL, &rows, &hash) != SQLITE_OK)
+            return prom_writer_fail(w, error);
+        prom_row_out row = prom_row_begin(w, PROM_TABLE_ROWS);
+        prom_put_text(&row, prom_tables[t].name);
+        prom_put_int(&row, (int64_t)rows);
+        prom_put_int(&row, (int64_t)hash);
+        prom_status status = prom_row_end(&row, error);
+        if (status) return status;
+    }
+    return PROM_OK;
+}
+
+// The name in the folder must survive a power cut too.
+static prom_status sync_folder(const char *path, prom_error *error)
+{
+    const char *slash = strrchr(path, '/');
+    char *folder = slash ? prom_format("%.*s/", (int)(slash - path), path) : prom_strdup(".");
+    int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    prom_status status = PROM_OK;
+    // Some file systems cannot sync folders and say EINVAL: nothing more can be done there.
+    if (fd < 0 || (fsync(fd) && errno != EINVAL)) status = fail_errno(error, "sync", folder);
+    if (fd >= 0) close(fd);
+    prom_free(folder);
+    return status;
+}
+
+prom_status prom_writer_finish(prom_writer *writer, prom_error *error)
+{
+    if (!writer->has_model || writer->broken)
+        return prom_fail(error, PROM_ERR_OUTPUT, "%s: cannot be finished: %s", writer->path,
+                         writer->broken ? "an earlier write failed" : "it holds no model yet");
+    prom_status status =
+        prom_writer_exec(writer, "COMMIT; PRAGMA synchronous=FULL; BEGIN", error);
+    if (!status) status = write_meta(writer, error);
+    if (!status) status = write_row_hashes(writer, error);
+    if (!status) status = prom_writer_exec(writer, "COMMIT", error);
+    if (status) return status;
+    close_database(writer);
+    if (fsync(writer->lock_fd)) return fail_errno(error, "sync", writer->part_path);
+    if (rename(writer->part_path, writer->path))
+        return fail_errno(error, "rename the finished file to", writer->path);
+    writer->finished = true;
+    return sync_folder(writer->path, error);
+}
