@@ -107,6 +107,8 @@ static void draw_blended(const submission *s, size_t first, size_t last, bool ba
         glBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC1_COLOR, GL_ONE, GL_ZERO);
         for (size_t i = first; i < last; i++) draw_run_as(s, &runs[i], PIPELINE_BLENDED);
         glDisable(GL_BLEND);
+        // Mesa refuses to draw to two attachments as long as the factors name a second source.
+        glBlendFunc(GL_ONE, GL_ZERO);
         glBindFramebuffer(GL_FRAMEBUFFER, s->target->framebuffer);
     }
     bool needs_ids = s->target->has_ids && !background;

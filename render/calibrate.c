@@ -1,0 +1,149 @@
+#include "render/calibrate.h"
+
+#include "metaobj/base/clock.h"
+#include "metaobj/base/log.h"
+#include "render/calibrate_scene.h"
+#include "render/renderer_private.h"
+
+#include <stdlib.h>
+
+#define SEED 0x9e3779b97f4a7c15u
+#define SAMPLE_MS 5.0 // each sample is drawn for at least this long
+#define MIN_REPEATS 3
+#define MAX_REPEATS 64
+#define FIXED_SAMPLES 3 // empty frames, per effort
+
+typedef struct calibration {
+    prom_renderer *renderer;
+    prom_timer *timer;
+    prom_draw_list *list;
+    prom_target *target;
+    prom_pass pass;
+    scene_kit kit;
+    GLuint query;
+} calibration;
+
+static void draw(const calibration *c, const scene_plan *plan)
+{
+    if (plan)
+        scene_fill_list(&c->kit, plan, (float)c->pass.width / (float)c->pass.height, c->list);
+    prom_target_clear(c->target, prom_sky_color);
+    if (plan) prom_draw_list_submit(c->list, c->target, &c->pass);
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// The median over frames drawn for at least SAMPLE_MS. The list is filled anew in each, as it
+// is in the frames that the samples stand for.
+static double time_frame(const calibration *c, const scene_plan *plan)
+{
+    double ms[MAX_REPEATS], sum = 0;
+    int count = 0;
+    while (count < MAX_REPEATS && (count < MIN_REPEATS || sum < SAMPLE_MS)) {
+        prom_timer_begin(c->timer);
+        draw(c, plan);
+        ms[count] = prom_timer_end(c->timer);
+        sum += ms[count++];
+    }
+    qsort(ms, (size_t)count, sizeof *ms, compare_doubles);
+    return count % 2 ? ms[count / 2] : 0.5 * (ms[count / 2 - 1] + ms[count / 2]);
+}
+
+// Pixels that the plan's items cover, each layer of blended ones counted, as the device counts
+// them; also the frame that is drawn before any is timed.
+static double count_pixels(const calibration *c, const scene_plan *plan)
+{
+    GLuint64 samples = 0;
+    glBeginQuery(GL_SAMPLES_PASSED, c->query);
+    draw(c, plan);
+    glEndQuery(GL_SAMPLES_PASSED);
+    glGetQueryObjectui64v(c->query, GL_QUERY_RESULT, &samples);
+    return (double)samples;
+}
+
+static void take_sample(const calibration *c, const scene_plan *plan,
+                        prom_cost_samples *samples)
+{
+    prom_cost_sample sample = {.features.fixed = 1};
+    double pixels = count_pixels(c, plan);
+    if (plan) {
+        prom_renderer_take_stats(c->renderer);
+        draw(c, plan);
+        prom_draw_stats stats = prom_renderer_take_stats(c->renderer);
+        sample.features.draws = (double)stats.draws;
+        sample.features.vertices = (double)stats.vertices;
+        sample.features.triangles = (double)stats.triangles;
+        sample.features.pixels[plan->shading] = pixels;
+    }
+    sample.ms = time_frame(c, plan);
+    prom_array_push(samples, sample);
+}
+
+static void take_all(const calibration *c, int effort, prom_cost_samples *samples)
+{
+    static const int per_shading[] = {12, 24, 40}; // 63, 126 and 209 samples in all
+    scene_random random = {SEED};
+    prom_progress progress;
+    int rounds = per_shading[effort - 1];
+    prom_progress_begin(&progress, "calibrating",
+                        (uint64_t)(rounds * PROM_SHADE_COUNT + FIXED_SAMPLES * effort));
+    for (int i = 0; i < FIXED_SAMPLES * effort; i++) {
+        take_sample(c, NULL, samples);
+        prom_progress_step(&progress, 1);
+    }
+    for (int i = 0; i < rounds; i++)
+        for (int shading = 0; shading < PROM_SHADE_COUNT; shading++) {
+            scene_plan plan = scene_plan_random(&random, (prom_shading)shading, &c->kit);
+            take_sample(c, &plan, samples);
+            prom_progress_step(&progress, 1);
+        }
+    prom_progress_end(&progress);
+}
+
+// The materials are the one thing that truncating does not bring back.
+static void keep_materials(const prom_renderer *r, prom_material **kept, uint32_t *count)
+{
+    *count = (uint32_t)r->materials.count;
+    *kept = prom_alloc(*count, sizeof **kept);
+    if (*count) memcpy(*kept, r->materials.data, *count * sizeof **kept);
+}
+
+prom_status prom_calibrate_run(prom_renderer *renderer, prom_timer *timer, uint32_t width,
+                               uint32_t height, int effort, prom_cost_samples *samples,
+                               prom_error *error)
+{
+    if (effort < 1 || effort > 3)
+        return prom_fail(error, PROM_ERR_USAGE, "calibration effort %d: give 1, 2 or 3",
+                         effort);
+    calibration c = {.renderer = renderer, .timer = timer};
+    c.pass =
+        (prom_pass){.projection = GLM_MAT4_IDENTITY_INIT, .width = width, .height = height};
+    c.target = prom_target_create(width, height, false, error);
+    if (!c.target) return PROM_ERR_UNSUPPORTED;
+    uint32_t meshes = prom_renderer_mesh_count(renderer), material_count;
+    uint32_t textures = prom_renderer_texture_count(renderer);
+    prom_draw_stats stats = renderer->stats;
+    prom_material *materials;
+    keep_materials(renderer, &materials, &material_count);
+    c.list = prom_draw_list_create(renderer);
+    glCreateQueries(GL_SAMPLES_PASSED, 1, &c.query);
+
+    prom_status status = PROM_OK;
+    if (scene_kit_upload(&c.kit, renderer))
+        take_all(&c, effort, samples);
+    else
+        status = renderer_out_of_memory(error);
+
+    glDeleteQueries(1, &c.query);
+    prom_draw_list_destroy(c.list);
+    prom_target_destroy(c.target);
+    prom_renderer_truncate(renderer, meshes, textures);
+    prom_renderer_set_materials(renderer, materials, material_count);
+    prom_free(materials);
+    renderer->stats = stats;
+    return status;
+}

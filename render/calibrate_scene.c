@@ -1,0 +1,188 @@
+#include "render/calibrate_scene.h"
+
+#include <math.h>
+
+#define PICTURE 64u // side of the impostors' pictures and of the material's texture, texels
+#define MAX_TRIANGLES 400000u
+#define MAX_ITEMS 2000.0
+
+// Stacks and slices of the balls: triangles = 2 * slices * (stacks - 1).
+static const struct {
+    uint32_t stacks, slices;
+} details[SCENE_DETAILS] = {{3, 3}, {5, 6}, {11, 10}, {26, 20}, {51, 50}};
+
+uint32_t scene_random_next(scene_random *random)
+{
+    uint64_t old = random->state;
+    random->state = old * 6364136223846793005u + 1442695040888963407u;
+    uint32_t mixed = (uint32_t)(((old >> 18) ^ old) >> 27);
+    uint32_t turn = (uint32_t)(old >> 59);
+    return mixed >> turn | mixed << (-turn & 31);
+}
+
+double scene_random_log(scene_random *random, double low, double high)
+{
+    double t = (double)scene_random_next(random) / 4294967296.0;
+    return low * pow(high / low, t);
+}
+
+// ---- what is uploaded
+
+static prom_vertex ball_vertex(uint32_t stack, uint32_t slice, uint32_t detail)
+{
+    float v = (float)stack / (float)details[detail].stacks;
+    float u = (float)slice / (float)details[detail].slices;
+    float polar = v * (float)M_PI, around = u * 2 * (float)M_PI;
+    float p[3] = {sinf(polar) * cosf(around), cosf(polar), -sinf(polar) * sinf(around)};
+    prom_vertex vertex = {
+        .position = {p[0], p[1], p[2]}, .color = {230, 220, 200, 255}, .uv = {u, v}};
+    prom_pack_normal(p, vertex.normal);
+    return vertex;
+}
+
+static void init_ball(prom_mesh *mesh, uint32_t detail)
+{
+    uint32_t stacks = details[detail].stacks, slices = details[detail].slices, n = 0;
+    prom_mesh_init(mesh, (stacks + 1) * (slices + 1), 6 * slices * (stacks - 1), 1);
+    for (uint32_t i = 0; i <= stacks; i++)
+        for (uint32_t j = 0; j <= slices; j++)
+            mesh->vertices[i * (slices + 1) + j] = ball_vertex(i, j, detail);
+    for (uint32_t i = 0; i < stacks; i++)
+        for (uint32_t j = 0; j < slices; j++) {
+            uint32_t a = i * (slices + 1) + j, b = a + slices + 1;
+            const uint32_t corners[6] = {a, b, b + 1, a, b + 1, a + 1};
+            // At the poles one of the two triangles is a point.
+            for (uint32_t k = 0; k < 6; k++)
+                if ((k < 3 && i < stacks - 1) || (k >= 3 && i > 0))
+                    mesh->indices[n++] = corners[k];
+        }
+    mesh->submeshes[0] = (prom_submesh){0, n, PROM_NONE};
+}
+
+static bool upload_meshes(scene_kit *kit, prom_renderer *r)
+{
+    bool ok = true;
+    for (uint32_t d = 0; d < SCENE_DETAILS; d++) {
+        prom_mesh ball;
+        init_ball(&ball, d);
+        kit->triangles[d] = ball.index_count / 3;
+        kit->vertices[d] = ball.vertex_count;
+        for (uint32_t s = 0; s < PROM_SHADE_COUNT; s++) {
+            ball.submeshes[0].material = s == PROM_SHADE_PLAIN ? PROM_NONE : s;
+            kit->meshes[d][s] = prom_renderer_add_mesh(r, &ball);
+            ok = ok && kit->meshes[d][s] != PROM_NONE;
+        }
+        prom_mesh_finish(&ball);
+    }
+    static const float center[3] = {0, 0, 0}, half[3] = {1, 1, 1};
+    prom_mesh box;
+    prom_mesh_init_box(&box, center, half, NULL);
+    kit->box = prom_renderer_add_mesh(r, &box);
+    prom_mesh_finish(&box);
+    return ok && kit->box != PROM_NONE;
+}
+
+// A blot that covers two thirds or so of the picture, with some structure.
+static void paint(prom_texture *texture)
+{
+    for (uint32_t layer = 0; layer < texture->layers; layer++)
+        for (uint32_t y = 0; y < texture->height; y++)
+            for (uint32_t x = 0; x < texture->width; x++) {
+                uint8_t *p = texture->pixels + prom_texture_offset(texture, 0, layer) +
+                             4 * ((size_t)y * texture->width + x);
+                float dx = (float)x / (PICTURE / 2) - 1, dy = (float)y / (PICTURE / 2) - 1;
+                p[0] = (uint8_t)(96 + x * 2);
+                p[1] = (uint8_t)(96 + y * 2);
+                p[2] = (uint8_t)(128 + ((x ^ y) & 31));
+                p[3] = dx * dx + dy * dy < 0.85f ? 255 : 0;
+            }
+    prom_texture_make_mips(texture, 0.5f);
+}
+
+static uint32_t upload_texture(prom_renderer *r, prom_texture_kind kind)
+{
+    prom_texture texture;
+    prom_texture_init(&texture, kind, PICTURE, PICTURE);
+    paint(&texture);
+    uint32_t id = prom_renderer_add_texture(r, &texture);
+    prom_texture_finish(&texture);
+    return id;
+}
+
+bool scene_kit_upload(scene_kit *kit, prom_renderer *renderer)
+{
+    uint32_t texture = upload_texture(renderer, PROM_TEXTURE_COLOR);
+    kit->pictures_unlit = upload_texture(renderer, PROM_TEXTURE_IMPOSTOR_LIT);
+    kit->pictures_lit = upload_texture(renderer, PROM_TEXTURE_IMPOSTOR_ALBEDO);
+    // One per shading, at its number.
+    const prom_material materials[PROM_SHADE_COUNT] = {
+        [PROM_SHADE_PLAIN] = {.base_color = {1, 1, 1, 1}, .texture = PROM_NONE},
+        [PROM_SHADE_TEXTURED] = {.base_color = {1, 1, 1, 1}, .texture = texture},
+        [PROM_SHADE_MASKED] = {.base_color = {1, 1, 1, 1},
+                               .texture = texture,
+                               .alpha_mode = PROM_ALPHA_MASK,
+                               .alpha_cutoff = 0.5f},
+        [PROM_SHADE_BLENDED] = {.base_color = {1, 1, 1, 0.5f},
+                                .texture = texture,
+                                .alpha_mode = PROM_ALPHA_BLEND},
+        [PROM_SHADE_IMPOSTOR] = {.base_color = {1, 1, 1, 1}, .texture = PROM_NONE},
+    };
+    prom_renderer_set_materials(renderer, materials, PROM_SHADE_COUNT);
+    return upload_meshes(kit, renderer) && texture != PROM_NONE &&
+           kit->pictures_unlit != PROM_NONE && kit->pictures_lit != PROM_NONE;
+}
+
+// ---- samples
+
+scene_plan scene_plan_random(scene_random *random, prom_shading shading, const scene_kit *kit)
+{
+    scene_plan plan = {.shading = shading, .layers = 1};
+    plan.detail = scene_random_next(random) % SCENE_DETAILS;
+    plan.items = (uint32_t)scene_random_log(random, 1, MAX_ITEMS + 1);
+    plan.area = (float)scene_random_log(random, 0.02, 0.7);
+    if (shading == PROM_SHADE_BLENDED) plan.layers = 1 + scene_random_next(random) % 4;
+    plan.lit_picture = scene_random_next(random) & 1;
+    if (shading != PROM_SHADE_IMPOSTOR &&
+        plan.items > MAX_TRIANGLES / kit->triangles[plan.detail])
+        plan.items = MAX_TRIANGLES / kit->triangles[plan.detail];
+    if (plan.items < plan.layers) plan.items = plan.layers;
+    return plan;
+}
+
+static prom_draw_item make_item(const scene_kit *kit, const scene_plan *plan)
+{
+    prom_draw_item item = {.mesh = kit->meshes[plan->detail][plan->shading],
+                           .texture = PROM_NONE};
+    if (plan->shading == PROM_SHADE_IMPOSTOR) {
+        item.mesh = kit->box;
+        item.texture = plan->lit_picture ? kit->pictures_lit : kit->pictures_unlit;
+        item.flags = plan->lit_picture ? 0 : PROM_REP_UNLIT;
+    }
+    return item;
+}
+
+void scene_fill_list(const scene_kit *kit, const scene_plan *plan, float aspect,
+                     prom_draw_list *list)
+{
+    // Cells that are about square in pixels; x and y of clip space run from -1 to 1.
+    uint32_t cells = (plan->items + plan->layers - 1) / plan->layers;
+    uint32_t columns = (uint32_t)ceilf(sqrtf((float)cells * aspect));
+    uint32_t rows = (cells + columns - 1) / columns;
+    float width = 2.0f / (float)columns, height = 2.0f / (float)rows;
+    float reach = 0.5f * sqrtf(plan->area); // half a cell times the side that is covered
+    prom_draw_list_reset(list);
+    prom_draw_item item = make_item(kit, plan);
+    for (uint32_t i = 0; i < plan->items; i++) {
+        uint32_t cell = i % cells, layer = i / cells;
+        item.id = i;
+        item.origin[0] = -1 + width * ((float)(cell % columns) + 0.5f);
+        item.origin[1] = -1 + height * ((float)(cell / columns) + 0.5f);
+        item.origin[2] = 0.2f + 0.15f * (float)layer;
+        item.basis[0] = width * reach;
+        item.basis[4] = height * reach;
+        item.basis[8] = 0.05f;
+        item.depth = 1.0f + (float)(plan->layers - layer) + (float)cell * 1e-4f;
+        prom_draw_list_add(list, &item);
+    }
+    prom_draw_list_prepare(list);
+}

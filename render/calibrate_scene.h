@@ -1,0 +1,44 @@
+// The synthetic scenes of calibration: how they are drawn up, and what they are made of.
+// Private to render/.
+#ifndef PROM_RENDER_CALIBRATE_SCENE_H
+#define PROM_RENDER_CALIBRATE_SCENE_H
+
+#include "metaobj/model.h"
+#include "render/renderer.h"
+
+#define SCENE_DETAILS 5 // sizes of the meshes
+
+// What a sample draws: items side by side in a grid over the picture, each a ball (or, for
+// impostors, a box), in as many layers behind each other as `layers` says.
+typedef struct scene_plan {
+    prom_shading shading;
+    uint32_t items, detail; // detail: index of a mesh size; unused for impostors
+    uint32_t layers;        // over 1 for blended ones only
+    float area;             // of a cell that its item covers, about
+    bool lit_picture;       // impostors: pictures of albedo and normals
+} scene_plan;
+
+// Meshes, textures and materials of all samples, uploaded after whatever the renderer holds.
+typedef struct scene_kit {
+    uint32_t meshes[SCENE_DETAILS][PROM_SHADE_COUNT];
+    uint32_t box, pictures_unlit, pictures_lit;
+    uint32_t triangles[SCENE_DETAILS], vertices[SCENE_DETAILS];
+} scene_kit;
+
+// A small random generator with a state of its own: the same samples everywhere (PCG, O'Neill
+// 2014).
+typedef struct scene_random {
+    uint64_t state;
+} scene_random;
+uint32_t scene_random_next(scene_random *random);
+// In [low, high), evenly in the logarithm.
+double scene_random_log(scene_random *random, double low, double high);
+
+// false when the device has no memory left. Replaces the renderer's materials.
+bool scene_kit_upload(scene_kit *kit, prom_renderer *renderer);
+scene_plan scene_plan_random(scene_random *random, prom_shading shading, const scene_kit *kit);
+// Fills and prepares the list. Draw it with the identity as projection.
+void scene_fill_list(const scene_kit *kit, const scene_plan *plan, float aspect,
+                     prom_draw_list *list);
+
+#endif
