@@ -1,0 +1,44 @@
+# The front door. CMake does the work; the presets in CMakePresets.json say how.
+#
+#   make            build the program: build/release/app/promenade
+#   make demo       build, make a city, walk it, leave pictures and a report in out/demo
+#   make test       the tests, optimised and under the sanitizers
+#   make test-all   the slow ones too
+#   make bench      the tables of docs/BENCH.md; SCENES="..." names models, see tests/bench
+
+JOBS ?= $(shell nproc)
+
+.PHONY: all build deps demo test test-all bench format tidy clean
+
+all: build
+
+deps:
+	@scripts/install-deps.sh build
+
+build: deps
+	@scripts/build.sh release
+
+demo: build
+	@scripts/install-deps.sh demo
+	@scripts/demo.sh build/release/app/promenade out/demo
+
+test: deps
+	@scripts/test.sh -LE slow
+
+test-all: deps
+	@scripts/test.sh
+
+bench: build
+	@scripts/install-deps.sh bench
+	@tests/bench/run.sh build/release/app/promenade out/bench
+
+format:
+	@scripts/install-deps.sh format
+	git ls-files '*.c' '*.h' '*.cpp' | xargs clang-format -i
+
+tidy: build
+	@scripts/install-deps.sh format
+	git ls-files '*.c' | xargs -P $(JOBS) -n 4 clang-tidy --quiet -p build/release
+
+clean:
+	rm -rf build out

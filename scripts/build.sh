@@ -1,0 +1,8 @@
+#!/bin/sh
+# scripts/build.sh PRESET: configures (once) and builds a preset, on all cores.
+set -eu
+preset=$1
+if [ ! -f "build/$preset/build.ninja" ]; then
+    cmake --preset "$preset" > /dev/null
+fi
+cmake --build --preset "$preset" -j "$(nproc)"

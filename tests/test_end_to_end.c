@@ -1,0 +1,310 @@
+// LINK: prom_metaobj PkgConfig::JANSSON
+// NEEDS: promenade
+//
+// The whole way through the program with a tiny city: scene, build, info, shot, bench, and what
+// goes wrong with a real model at hand. Skips where there is no GL.
+#include "tests/run_program.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <sys/stat.h>
+
+#include <cmocka.h>
+#include <jansson.h>
+
+#define SMALL " --resolution 160,90 --profile p.json --quiet"
+
+static program_run run;
+static bool no_device;
+
+static void expect(const char *arguments, int code)
+{
+    run_program(&run, arguments);
+    if (run.code != code) fprintf(stderr, "promenade %s: %s\n", arguments, run.err);
+    assert_int_equal(run.code, code);
+}
+
+static off_t size_of(const char *path)
+{
+    struct stat st;
+    return stat(path, &st) == 0 ? st.st_size : -1;
+}
+
+static int make_model(void **state)
+{
+    (void)state;
+    run_program(&run, "calibrate --effort 1 --resolution 160,90 -o p.json --quiet");
+    no_device = run.code == 3;
+    if (no_device) {
+        fprintf(stderr, "skipped: %s", run.err);
+        return 0;
+    }
+    assert_int_equal(run.code, 0);
+    expect("scene city --seed 7 --size 1 --detail 1 --styles 2 -o city.glb --path city.path",
+           0);
+    expect("build city.glb -o city.prom --quiet", 0);
+    return 0;
+}
+
+#define NEED_DEVICE()                                                                          \
+    if (no_device) skip()
+
+static json_t *at(json_t *json, const char *path)
+{
+    char text[128];
+    snprintf(text, sizeof text, "%s", path);
+    for (char *key = strtok(text, "."); key && json; key = strtok(NULL, "."))
+        json = json_object_get(json, key);
+    if (!json) fprintf(stderr, "no key %s\n", path);
+    return json;
+}
+
+static double number(json_t *json, const char *path)
+{
+    json_t *value = at(json, path);
+    assert_true(json_is_number(value));
+    return json_number_value(value);
+}
+
+static void the_build_leaves_one_file(void **state)
+{
+    (void)state;
+    NEED_DEVICE();
+    const char *const made[] = {"city.glb", "city.path", "city.prom", "p.json", NULL};
+    assert_int_equal(count_others(".", made), 0);
+    assert_true(size_of("city.prom") > 0);
+}
+
+static void info_tells_what_was_built(void **state)
+{
+    (void)state;
+    NEED_DEVICE();
+    expect("info city.prom", 0);
+    assert_non_null(strstr(run.out, "textured-box"));
+    expect("info city.prom --json", 0);
+    json_t *info = json_loads(run.out, 0, NULL);
+    assert_non_null(info);
+    double leaves = number(info, "nodes.leaves"), nodes = 0;
+    assert_true(leaves > 1);
+    assert_true(leaves == number(info, "nodes.objects") + number(info, "nodes.chunks") +
+                              number(info, "nodes.blended"));
+    size_t level;
+    json_t *count;
+    json_array_foreach(at(info, "nodes.by_level"), level, count) nodes +=
+        (double)json_integer_value(count);
+    assert_true(nodes == leaves + number(info, "nodes.clusters"));
+    assert_true(number(info, "tables.node.rows") == nodes + number(info, "nodes.backdrops"));
+    assert_true(number(info, "triangles") > 0);
+    assert_true(number(info, "file_bytes") == (double)size_of("city.prom"));
+    assert_true(json_array_size(at(info, "stages")) > 0);
+    json_decref(info);
+}
+
+static void shots_are_written(void **state)
+{
+    (void)state;
+    NEED_DEVICE();
+    expect("shot city.prom --path city.path --frame 10 -o a.png" SMALL, 0);
+    assert_true(size_of("a.png") > 200);
+    expect("shot city.prom --eye 10,20,60 --look-at 0,0,0 --budget-ms 5 --selector meta "
+           "--false-colours -o b.png" SMALL,
+           0);
+    assert_true(size_of("b.png") > 200);
+    expect("shot city.prom --wireframe -o c.png" SMALL, 0);
+    assert_true(size_of("c.png") > 200);
+    const char *const made[] = {"city.glb", "city.path", "city.prom", "p.json",
+                                "a.png",    "b.png",     "c.png",     NULL};
+    assert_int_equal(count_others(".", made), 0);
+}
+
+// The keys of a report.
+static const char *const keys[] = {
+    "scene",           "path",
+    "frames",          "budget_ms",
+    "selector",        "frame_ms.mean",
+    "frame_ms.p50",    "frame_ms.p95",
+    "frame_ms.p99",    "frame_ms.max",
+    "frame_ms.std",    "miss_rate",
+    "use_of_budget",   "select_ms.mean",
+    "select_ms.p99",   "triangles.mean",
+    "cut_nodes.mean",  "start_s",
+    "memory_mb.start", "memory_mb.end",
+    "predict.mape",    "predict.worst_under",
+    "loss.mean",       "holes.mean",
+    "holes.max",       "device.renderer",
+    "resolution",
+};
+
+static void check_run(json_t *one, const char *selector)
+{
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) assert_non_null(at(one, keys[i]));
+    assert_string_equal(json_string_value(at(one, "selector")), selector);
+    assert_true(number(one, "frames") == 12);
+    assert_true(number(one, "budget_ms") == 20);
+    double mean = number(one, "frame_ms.mean"), p50 = number(one, "frame_ms.p50");
+    double p95 = number(one, "frame_ms.p95"), max = number(one, "frame_ms.max");
+    assert_true(p50 > 0 && p50 <= p95 && p95 <= max && mean <= max);
+    assert_true(fabs(number(one, "use_of_budget") - mean / 20) < 1e-6);
+    double rate = number(one, "miss_rate");
+    assert_true(rate >= 0 && rate <= 1);
+    double holes = number(one, "holes.mean");
+    assert_true(holes >= 0 && holes <= number(one, "holes.max"));
+    assert_true(number(one, "cut_nodes.mean") >= 1);
+    assert_true(number(one, "memory_mb.end") > 0);
+}
+
+static void check_csv(const char *path)
+{
+    static char text[65536];
+    slurp(path, text, sizeof text);
+    assert_int_equal(count_lines(text), 13); // the header and 12 frames
+    assert_int_equal(strncmp(text, "frame,t_s,budget_ms,frame_ms,select_ms,", 39), 0);
+}
+
+static void bench_reports_every_selector(void **state)
+{
+    (void)state;
+    NEED_DEVICE();
+    const char *const selectors[] = {"meta", "greedy", "distance", "full", "coarsest"};
+    for (int i = 0; i < 5; i++) {
+        char arguments[512];
+        snprintf(arguments, sizeof arguments,
+                 "bench city.prom --path city.path --selector %s --budget-ms 20 --frames 12 "
+                 "--warmup 2 --check-holes 3 --report r.json --csv r.csv --keep-frames kept "
+                 "--every 6" SMALL,
+                 selectors[i]);
+        expect(arguments, 0);
+        json_t *report = json_load_file("r.json", 0, NULL);
+        assert_int_equal(json_array_size(at(report, "runs")), 1);
+        check_run(json_array_get(at(report, "runs"), 0), selectors[i]);
+        json_decref(report);
+        check_csv("r.csv");
+        const char *const pictures[] = {"frame-00000.png", "frame-00006.png", NULL};
+        assert_int_equal(count_others("kept", pictures), 0);
+        assert_true(size_of("kept/frame-00006.png") > 200);
+    }
+    // Full detail has no holes against itself.
+    expect("bench city.prom --selector full --frames 4 --warmup 0 --check-holes 4 "
+           "--report r.json" SMALL,
+           0);
+    json_t *report = json_load_file("r.json", 0, NULL);
+    assert_true(number(json_array_get(at(report, "runs"), 0), "holes.max") == 0);
+    json_decref(report);
+}
+
+static void full_draws_at_least_what_coarsest_draws(void **state)
+{
+    (void)state;
+    NEED_DEVICE();
+    double triangles[2];
+    const char *const selectors[] = {"full", "coarsest"};
+    for (int i = 0; i < 2; i++) {
+        char arguments[256];
+        snprintf(arguments, sizeof arguments,
+                 "bench city.prom --selector %s --path city.path --frames 3 --warmup 0 "
+                 "--report r.json" SMALL,
+                 selectors[i]);
+        expect(arguments, 0);
+        json_t *report = json_load_file("r.json", 0, NULL);
+        triangles[i] = number(json_array_get(at(report, "runs"), 0), "triangles.mean");
+        json_decref(report);
+    }
+    assert_true(triangles[0] > triangles[1]);
+}
+
+// A budget below the cheapest cut is met with a warning that names one that would do.
+static void an_impossible_budget_is_named(void **state)
+{
+    (void)state;
+    NEED_DEVICE();
+    expect("bench city.prom --path city.path --budget-ms 0.01 --frames 3 --warmup 0" SMALL, 0);
+    assert_non_null(strstr(run.err, "would do"));
+    assert_int_equal(count_lines(run.err), 1);
+}
+
+static void copy_head(const char *from, const char *to, long bytes)
+{
+    FILE *in = fopen(from, "rb"), *out = fopen(to, "wb");
+    assert_non_null(in);
+    assert_non_null(out);
+    for (int c; bytes-- > 0 && (c = fgetc(in)) != EOF;) fputc(c, out);
+    fclose(in);
+    fclose(out);
+}
+
+static void expect_error(const char *arguments, int code, const char *name)
+{
+    expect(arguments, code);
+    assert_int_equal(count_lines(run.err), 1);
+    assert_non_null(strstr(run.err, name));
+}
+
+static void damaged_files_are_named(void **state)
+{
+    (void)state;
+    NEED_DEVICE();
+    FILE *file = fopen("bad.path", "w");
+    assert_non_null(file);
+    fputs("# a path\n0 0 0 0 0 0 0 1\n0.1 0 nonsense\n", file);
+    fclose(file);
+    expect_error("bench city.prom --path bad.path" SMALL, 2, "bad.path");
+    expect_error("bench city.prom --path none.path" SMALL, 2, "none.path");
+    expect_error("shot city.prom -o d.png --profile city.path --resolution 160,90", 2,
+                 "city.path");
+    long bytes = (long)size_of("city.prom");
+    for (int i = 1; i < 4; i++) {
+        copy_head("city.prom", "cut.prom", bytes * i / 4);
+        expect_error("bench cut.prom --frames 1" SMALL, 2, "cut.prom");
+    }
+    copy_head("city.glb", "cut.glb", (long)size_of("city.glb") / 2);
+    expect_error("build cut.glb -o d.prom --quiet", 2, "cut.glb");
+    assert_int_equal(size_of("d.prom"), -1);
+    assert_int_equal(size_of("d.prom.part"), -1);
+    assert_int_equal(size_of("d.png"), -1);
+}
+
+static void the_same_build_has_the_same_content(void **state)
+{
+    (void)state;
+    NEED_DEVICE();
+    char first[17];
+    expect("info city.prom --json", 0);
+    json_t *info = json_loads(run.out, 0, NULL);
+    snprintf(first, sizeof first, "%s", json_string_value(at(info, "content")));
+    json_decref(info);
+    expect("build city.glb -o again.prom --quiet", 0);
+    expect("info again.prom --json", 0);
+    info = json_loads(run.out, 0, NULL);
+    assert_string_equal(first, json_string_value(at(info, "content")));
+    json_decref(info);
+}
+
+static void the_strict_octree_builds(void **state)
+{
+    (void)state;
+    NEED_DEVICE();
+    expect("build city.glb -o strict.prom --octree strict --divisions 4,1,4 --quiet", 0);
+    expect("bench strict.prom --path city.path --frames 3 --warmup 0 --selector meta" SMALL, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_build_leaves_one_file),
+        cmocka_unit_test(info_tells_what_was_built),
+        cmocka_unit_test(shots_are_written),
+        cmocka_unit_test(bench_reports_every_selector),
+        cmocka_unit_test(full_draws_at_least_what_coarsest_draws),
+        cmocka_unit_test(an_impossible_budget_is_named),
+        cmocka_unit_test(damaged_files_are_named),
+        cmocka_unit_test(the_same_build_has_the_same_content),
+        cmocka_unit_test(the_strict_octree_builds),
+    };
+    enter_scratch();
+    int failed = cmocka_run_group_tests(tests, make_model, NULL);
+    leave_scratch();
+    return failed;
+}
