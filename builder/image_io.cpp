@@ -113,34 +113,42 @@ float weight_of(float alpha)
     return alpha * (254.0f / 255.0f) + 1.0f / 255.0f;
 }
 
-// Reduces in linear light, colours weighted by alpha. `rgba` is replaced.
-std::string reduce(std::vector<uint8_t> &rgba, int &width, int &height, int max_px)
+// Resamples in linear light, colours weighted by alpha.
+std::string resample(const uint8_t *rgba, int width, int height, uint8_t *out, int w, int h)
 {
-    double scale = double(max_px) / std::max(width, height);
-    int w = std::clamp(int(std::lround(width * scale)), 1, max_px);
-    int h = std::clamp(int(std::lround(height * scale)), 1, max_px);
-    std::vector<float> linear(rgba.size());
-    for (size_t i = 0; i < rgba.size(); i += 4) {
+    std::vector<float> linear(size_t(width) * size_t(height) * 4);
+    for (size_t i = 0; i < linear.size(); i += 4) {
         float weight = weight_of(float(rgba[i + 3]) / 255.0f);
         for (size_t c = 0; c < 3; c++)
             linear[i + c] = prom_srgb8_to_linear(rgba[i + c]) * weight;
         linear[i + 3] = weight;
     }
-    std::vector<uint8_t>().swap(rgba);
     ImageBuf source(ImageSpec(width, height, 4, TypeDesc::FLOAT), linear.data());
     std::vector<float> small(size_t(w) * size_t(h) * 4);
     ImageBuf target(ImageSpec(w, h, 4, TypeDesc::FLOAT), small.data());
     // One thread: the library's own pool does not survive a fork.
     if (!ImageBufAlgo::resize(target, source, "triangle", 2.0f, ROI::All(), 1))
         return target.geterror();
-    rgba.resize(small.size());
     for (size_t i = 0; i < small.size(); i += 4) {
         float weight = std::max(small[i + 3], 1.0f / 255.0f);
         for (size_t c = 0; c < 3; c++)
-            rgba[i + c] = prom_linear_to_srgb8(std::clamp(small[i + c] / weight, 0.0f, 1.0f));
+            out[i + c] = prom_linear_to_srgb8(std::clamp(small[i + c] / weight, 0.0f, 1.0f));
         float alpha = (weight - 1.0f / 255.0f) * (255.0f / 254.0f);
-        rgba[i + 3] = uint8_t(std::lround(std::clamp(alpha, 0.0f, 1.0f) * 255.0f));
+        out[i + 3] = uint8_t(std::lround(std::clamp(alpha, 0.0f, 1.0f) * 255.0f));
     }
+    return "";
+}
+
+// Reduces to at most max_px on a side. `rgba` is replaced.
+std::string reduce(std::vector<uint8_t> &rgba, int &width, int &height, int max_px)
+{
+    double scale = double(max_px) / std::max(width, height);
+    int w = std::clamp(int(std::lround(width * scale)), 1, max_px);
+    int h = std::clamp(int(std::lround(height * scale)), 1, max_px);
+    std::vector<uint8_t> small(size_t(w) * size_t(h) * 4);
+    std::string why = resample(rgba.data(), width, height, small.data(), w, h);
+    if (!why.empty()) return why;
+    rgba.swap(small);
     width = w;
     height = h;
     return "";
@@ -284,6 +292,16 @@ prom_status prom_image_read(const char *path, uint32_t max_px, uint32_t *width,
         prom_free(file.data);
         return status;
     });
+}
+
+bool prom_image_resize(const uint8_t *rgba, uint32_t width, uint32_t height, uint8_t *out,
+                       uint32_t out_width, uint32_t out_height)
+{
+    return guarded(nullptr, "resampling", [&] {
+               std::string why = resample(rgba, int(width), int(height), out, int(out_width),
+                                          int(out_height));
+               return why.empty() ? PROM_OK : PROM_ERR_UNSUPPORTED;
+           }) == PROM_OK;
 }
 
 prom_status prom_image_encode_png(uint32_t width, uint32_t height, int channels,

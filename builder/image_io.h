@@ -4,6 +4,7 @@
 
 #include "metaobj/base/status.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -19,6 +20,10 @@ prom_status prom_image_read(const char *path, uint32_t max_px, uint32_t *width,
 prom_status prom_image_read_memory(const void *data, size_t bytes, const char *name,
                                    uint32_t max_px, uint32_t *width, uint32_t *height,
                                    uint8_t **rgba, prom_error *error);
+// Resamples an sRGB RGBA8 picture in linear light, alpha-weighted. out: out_width x out_height x 4
+// bytes. False when memory ends.
+bool prom_image_resize(const uint8_t *rgba, uint32_t width, uint32_t height, uint8_t *out,
+                       uint32_t out_width, uint32_t out_height);
 // Writes a PNG atomically. channels: 3 or 4 (input is packed accordingly).
 prom_status prom_image_write_png(const char *path, uint32_t width, uint32_t height,
                                  int channels, const uint8_t *pixels, prom_error *error);

@@ -2,6 +2,7 @@
 
 #include "builder/image_io.h"
 #include "metaobj/base/alloc.h"
+#include "metaobj/base/log.h"
 #include "metaobj/base/threads.h"
 
 #define SIDE_MIN 4u
@@ -29,7 +30,9 @@ static void make_one(void *user, size_t i, unsigned thread)
     prom_texture *t = &j->textures[i];
     uint32_t side = side_for(image->width, image->height);
     prom_texture_init(t, PROM_TEXTURE_COLOR, side, side);
-    prom_image_resize(image->rgba, image->width, image->height, t->pixels, side, side);
+    if (!prom_image_resize(image->rgba, image->width, image->height, t->pixels, side, side))
+        prom_log(PROM_LOG_WARNING, "%s: the picture cannot be resampled; it is left black",
+                 image->name);
     if (j->cutoffs[i] > 0) prom_texture_dilate(t, 8);
     prom_texture_make_mips(t, j->cutoffs[i]);
 }
