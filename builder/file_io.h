@@ -22,4 +22,10 @@ prom_status prom_file_read(const char *path, uint64_t limit, prom_bytes *bytes,
 prom_status prom_file_write(const char *path, const prom_bytes *parts, size_t count,
                             prom_error *error);
 
+// Finds a file that a scene names: beside the scene as written (backslashes count as slashes),
+// then in any case of letters, then by its last component there and in the usual folders of
+// pictures, then all that with %20 and the like decoded. NULL if there is none; free the path
+// with prom_free.
+char *prom_file_find(const char *scene_path, const char *name);
+
 #endif
