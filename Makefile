@@ -4,7 +4,7 @@
 #   make demo       build, make a city, walk it, leave pictures and a report in out/demo
 #   make test       the tests, optimised and under the sanitizers
 #   make test-all   the slow ones too
-#   make bench      the tables of docs/BENCH.md; SCENES="..." names models, see tests/bench
+#   make bench      tables of builds and frame times in out/bench; see tests/bench/run.sh
 
 JOBS ?= $(shell nproc)
 
