@@ -3,11 +3,6 @@
 #include <assert.h>
 #include <math.h>
 
-static float near_factor(float near_k, float e_px)
-{
-    return 1.0f / (1.0f + near_k * e_px);
-}
-
 float prom_accuracy(const prom_model *model, uint32_t rep, uint32_t dir, float size_px,
                     float radius)
 {
@@ -19,14 +14,15 @@ float prom_accuracy(const prom_model *model, uint32_t rep, uint32_t dir, float s
         int bin = (int)position;
         if (bin > PROM_SIZES - 2) bin = PROM_SIZES - 2;
         float t = position - (float)bin;
-        return ((1.0f - t) * (float)row[bin] + t * (float)row[bin + 1]) / 255.0f;
+        float low = (float)row[bin], high = (float)row[bin + 1];
+        return (low + t * (high - low)) / 255.0f;
     }
     const prom_representation *r = &model->reps[rep];
     float largest = (float)row[PROM_SIZES - 1] / 255.0f;
     if (r->kind != PROM_REP_MESH || !(radius > 0.0f)) return largest;
     float per_px = r->error / (2.0f * radius);
-    return largest * near_factor(r->near_k, per_px * size_px) /
-           near_factor(r->near_k, per_px * PROM_SIZE_MAX_PX);
+    return largest * ((1.0f + r->near_k * per_px * PROM_SIZE_MAX_PX) /
+                      (1.0f + r->near_k * per_px * size_px));
 }
 
 float prom_footprint_px(const prom_model *model, uint32_t prototype, uint32_t dir,

@@ -1,10 +1,8 @@
 // Greedy by marginal benefit per cost, from the cheapest cut upwards.
 //
 // The cheapest cut is set aside first; then steps of the chains (chain.h) are bought in one
-// global order of falling slope, until one does not fit. If that step opens a cluster, the
-// cluster is opened with as few refinements as make it worth while, and the buying goes on with
-// its children; else it ends, for skipping on makes levels flip. More budget so always buys the
-// same steps and more.
+// global order of falling slope, until one does not fit: skipping on would make levels flip.
+// The order does not depend on the budget, so more of it buys the same steps and more.
 #include "traverse/chain.h"
 #include "traverse/evaluate.h"
 #include "traverse/selectors.h"
@@ -84,24 +82,17 @@ static void place_stacked(greedy_state *g, uint32_t depth)
     }
 }
 
-static void place_node(greedy_state *g, uint32_t node, uint8_t place)
+// The next action on a node: to the next state of its chain; or, where that and all further
+// ones are openings, to the opening with the fewest steps of its children that is worth while.
+// What more the chain's own opening would hold follows by itself: the children's next steps are
+// steeper than it.
+static bool next_action(greedy_state *g, uint32_t node, prom_chain_state *next, bool *hand_over)
 {
-    g->stack[0] = (placed){node, place};
-    place_stacked(g, 1);
-}
-
-// Opens a node whose next step is too dear with the least that is worth while.
-static bool open_partly(greedy_state *g, uint32_t node, double *total, double budget)
-{
+    const prom_chain *chain = &g->chains.nodes[node];
     const prom_chain_state *now = &states_of(g, node)[g->place[node]];
-    prom_chain_state least;
-    if (now[1].option != PROM_NONE) return false;
-    if (!prom_chain_least_opening(&g->chains, node, now->benefit, &least)) return false;
-    if (*total + (least.cost - now->cost) > budget) return false;
-    *total += least.cost - now->cost;
-    prom_heap_pop(&g->heap);
-    g->opened[node] = true;
-    place_stacked(g, push_children(g, node, &least.limit, 0));
+    *hand_over = g->place[node] + 1 >= chain->own_end;
+    if (*hand_over) return prom_chain_least_opening(&g->chains, node, now->benefit, next);
+    *next = now[1];
     return true;
 }
 
@@ -109,14 +100,18 @@ static void buy_steps(greedy_state *g, double total, double budget)
 {
     while (g->heap.count) {
         uint32_t node = g->heap.entries[0].node;
-        const prom_chain_state *now = &states_of(g, node)[g->place[node]];
-        double change = now[1].cost - now->cost;
-        if (total + change <= budget) {
-            total += change;
-            prom_heap_pop(&g->heap);
-            place_node(g, node, (uint8_t)(g->place[node] + 1));
-        } else if (!open_partly(g, node, &total, budget)) {
-            return;
+        prom_chain_state next;
+        bool hand_over;
+        if (!next_action(g, node, &next, &hand_over)) return;
+        total += next.cost - states_of(g, node)[g->place[node]].cost;
+        if (total > budget) return;
+        prom_heap_pop(&g->heap);
+        if (hand_over) {
+            g->opened[node] = true;
+            place_stacked(g, push_children(g, node, &next.limit, 0));
+        } else {
+            g->stack[0] = (placed){node, (uint8_t)(g->place[node] + 1)};
+            place_stacked(g, 1);
         }
     }
 }
@@ -154,7 +149,8 @@ static void select_greedy(void *pointer, const prom_selection *selection, prom_c
         prom_chains_build(&g->chains);
         for (uint32_t i = 0; i < eval->visited_count; i++) g->opened[eval->visited[i]] = false;
         g->heap.count = 0;
-        place_node(g, 0, 0);
+        g->stack[0] = (placed){0, 0};
+        place_stacked(g, 1);
         // Rounding of the running sum must not lift the finished cut over the budget.
         buy_steps(g, eval->fixed_ms + eval->nodes[0].cmin, selection->budget_ms * (1.0 - 1e-9));
         emit_cut(g, cut);

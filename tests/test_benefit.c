@@ -1,0 +1,283 @@
+// LINK: prom_benefit prom_metaobj
+// Accuracy, footprints and the edge-blur metric.
+#include "benefit/accuracy.h"
+#include "benefit/metric.h"
+#include "random_model.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+
+static const random_model_options small_model = {.leaves = 40, .max_children = 7, .extent = 50};
+
+// ---- accuracy
+
+static void accuracy_of_full_geometry_is_1(void **state)
+{
+    (void)state;
+    prom_model m;
+    random_model(&m, 1, &small_model);
+    uint64_t seed = 2;
+    for (uint32_t p = 0; p < m.prototype_count; p++) {
+        if (m.prototypes[p].child_count) continue;
+        for (int i = 0; i < 50; i++) {
+            float size = powf(10.0f, random_between(&seed, -1, 6));
+            float a =
+                prom_accuracy(&m, m.prototypes[p].first_rep, random_below(&seed, PROM_DIRS),
+                              size, m.prototypes[p].radius);
+            assert_float_equal(a, 1.0f, 1e-6f);
+        }
+    }
+    prom_model_finish(&m);
+}
+
+static void accuracy_meets_its_table_and_is_continuous(void **state)
+{
+    (void)state;
+    prom_model m;
+    random_model(&m, 3, &small_model);
+    for (uint32_t p = 0; p < m.prototype_count; p++) {
+        const prom_prototype *proto = &m.prototypes[p];
+        for (uint32_t r = proto->first_rep; r < proto->first_rep + proto->rep_count; r++) {
+            for (uint32_t s = 0; s < PROM_SIZES; s++)
+                assert_float_equal(
+                    prom_accuracy(&m, r, r % PROM_DIRS, prom_size_of_bin(s), proto->radius),
+                    (float)m.accuracy[r][r % PROM_DIRS][s] / 255.0f, 1e-5f);
+            float last = prom_accuracy(&m, r, 0, 2.0f, proto->radius);
+            for (float size = 2.0f; size < 3000.0f; size *= 1.002f) {
+                float a = prom_accuracy(&m, r, 0, size, proto->radius);
+                assert_true(a >= 0.0f && a <= 1.0f);
+                // An octave at full swing is 1; a step here is a 346th of an octave.
+                assert_true(fabsf(a - last) < 0.004f);
+                last = a;
+            }
+        }
+    }
+    prom_model_finish(&m);
+}
+
+static void accuracy_falls_beyond_the_measured_sizes(void **state)
+{
+    (void)state;
+    prom_model m;
+    random_model(&m, 4, &small_model);
+    for (uint32_t p = 0; p < m.prototype_count; p++) {
+        const prom_prototype *proto = &m.prototypes[p];
+        for (uint32_t r = proto->first_rep; r < proto->first_rep + proto->rep_count; r++) {
+            float first = prom_accuracy(&m, r, 5, PROM_SIZE_MAX_PX, proto->radius),
+                  last = first;
+            for (float size = PROM_SIZE_MAX_PX; size < 1e5f; size *= 1.3f) {
+                float a = prom_accuracy(&m, r, 5, size, proto->radius);
+                assert_true(a <= last + 1e-6f);
+                last = a;
+            }
+            if (m.reps[r].kind == PROM_REP_MESH && m.reps[r].error > 0.0f && first > 0.0f)
+                assert_true(last < first);
+        }
+    }
+    prom_model_finish(&m);
+}
+
+static void near_fit_recovers_its_parameter(void **state)
+{
+    (void)state;
+    uint64_t seed = 5;
+    for (int i = 0; i < 100; i++) {
+        float k = powf(10.0f, random_between(&seed, -3, 2)), e[12], a[12];
+        for (int j = 0; j < 12; j++) {
+            e[j] = random_between(&seed, 0, 20);
+            a[j] = 1.0f / (1.0f + k * e[j]);
+        }
+        float fitted = prom_accuracy_fit_near(e, a, 12);
+        assert_true(fabsf(fitted / k - 1.0f) < 1e-3f);
+    }
+    const float e[3] = {1, 2, 4}, perfect[3] = {1, 1, 1}, nothing[3] = {0, 0, 0};
+    const float odd[3] = {NAN, 0.5f, INFINITY};
+    assert_true(prom_accuracy_fit_near(e, perfect, 3) < 1e-3f);
+    assert_true(prom_accuracy_fit_near(e, nothing, 3) > 10.0f);
+    assert_float_equal(prom_accuracy_fit_near(nothing, perfect, 3), 0.0f, 0.0f);
+    assert_float_equal(prom_accuracy_fit_near(NULL, NULL, 0), 0.0f, 0.0f);
+    assert_float_equal(prom_accuracy_fit_near(e, odd, 3), 0.5f, 1e-3f); // 1/(1+2k) = 0.5
+}
+
+// ---- pixels
+
+static void footprint_of_a_full_disc(void **state)
+{
+    (void)state;
+    prom_model m;
+    random_model(&m, 6, &small_model);
+    m.coverage[0][7] = 65535;
+    assert_float_equal(prom_footprint_px(&m, 0, 7, 100.0f), 7853.98f, 0.1f);
+    m.coverage[0][7] = 0;
+    assert_float_equal(prom_footprint_px(&m, 0, 7, 100.0f), 0.0f, 0.0f);
+    prom_model_finish(&m);
+}
+
+// DESIGN: with accuracy 1 everywhere, B(node) = sum of B(children | node).
+static void split_keeps_the_pixels_of_a_cluster(void **state)
+{
+    (void)state;
+    uint64_t seed = 7;
+    float in_view[16], px[16];
+    for (int round = 0; round < 40; round++) {
+        prom_model m;
+        random_model(&m, 100 + (uint64_t)round, &small_model);
+        for (uint32_t p = 0; p < m.prototype_count; p++) {
+            uint32_t count = m.prototypes[p].child_count;
+            if (!count) continue;
+            bool any = false;
+            for (uint32_t c = 0; c < count; c++) {
+                in_view[c] = random_below(&seed, 3) ? random_unit(&seed) : 0.0f;
+                any = any || in_view[c] > 0.0f;
+            }
+            float pixels = powf(10.0f, random_between(&seed, -2, 6));
+            uint32_t dir = random_below(&seed, PROM_DIRS);
+            if (random_below(&seed, 5) == 0) // nothing was visible when it was baked
+                for (uint32_t c = 0; c < count; c++)
+                    m.shares[m.prototypes[p].first_share + c][dir] = 0;
+            prom_split_pixels(&m, p, dir, pixels, in_view, px);
+            double sum = 0.0;
+            for (uint32_t c = 0; c < count; c++) {
+                assert_true(px[c] >= 0.0f);
+                if (!(in_view[c] > 0.0f)) assert_float_equal(px[c], 0.0f, 0.0f);
+                sum += px[c];
+            }
+            assert_true(fabs(sum / pixels - (any ? 1.0 : 0.0)) < 1e-5);
+        }
+        prom_model_finish(&m);
+    }
+}
+
+// ---- edge-blur
+
+enum { W = 53, H = 41, MAX_PIXELS = W * H };
+
+static void random_picture(uint64_t *seed, float *grey, uint32_t w, uint32_t h)
+{
+    for (uint32_t y = 0; y < h; y++)
+        for (uint32_t x = 0; x < w; x++)
+            grey[y * w + x] = random_unit(seed) * 0.5f + ((x / 7 + y / 5) % 2 ? 0.5f : 0.0f);
+}
+
+static double mean_error(const float *a, const float *b, uint32_t w, uint32_t h)
+{
+    static float error[MAX_PIXELS];
+    float *scratch = prom_alloc(prom_edge_blur_scratch(w, h), sizeof *scratch);
+    prom_edge_blur(a, b, w, h, error, scratch);
+    prom_free(scratch);
+    double sum = 0.0;
+    for (uint32_t i = 0; i < w * h; i++) {
+        assert_true(error[i] >= 0.0f && error[i] <= 1.0f);
+        sum += error[i];
+    }
+    return sum / (w * h);
+}
+
+static void box_blur(const float *in, float *out, uint32_t w, uint32_t h)
+{
+    for (int y = 0; y < (int)h; y++) {
+        for (int x = 0; x < (int)w; x++) {
+            float sum = 0.0f;
+            for (int dy = -1; dy <= 1; dy++)
+                for (int dx = -1; dx <= 1; dx++) {
+                    int yy = y + dy < 0 ? 0 : y + dy >= (int)h ? (int)h - 1 : y + dy;
+                    int xx = x + dx < 0 ? 0 : x + dx >= (int)w ? (int)w - 1 : x + dx;
+                    sum += in[yy * (int)w + xx];
+                }
+            out[y * (int)w + x] = sum / 9.0f;
+        }
+    }
+}
+
+static void edge_blur_is_a_difference(void **state)
+{
+    (void)state;
+    static float a[MAX_PIXELS], b[MAX_PIXELS];
+    const uint32_t sizes[][2] = {{W, H}, {1, 1}, {1, 9}, {9, 1}, {2, 2}, {3, 5}, {17, 4}};
+    uint64_t seed = 8;
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        uint32_t w = sizes[i][0], h = sizes[i][1];
+        random_picture(&seed, a, w, h);
+        random_picture(&seed, b, w, h);
+        assert_true(mean_error(a, a, w, h) == 0.0);
+        assert_true(mean_error(a, b, w, h) == mean_error(b, a, w, h));
+        assert_true(mean_error(a, b, w, h) > 0.0);
+    }
+}
+
+static void edge_blur_grows_with_blur(void **state)
+{
+    (void)state;
+    static float a[MAX_PIXELS], blurred[MAX_PIXELS], next[MAX_PIXELS];
+    uint64_t seed = 9;
+    random_picture(&seed, a, W, H);
+    memcpy(blurred, a, sizeof blurred);
+    double last = 0.0;
+    for (int i = 0; i < 4; i++) {
+        box_blur(blurred, next, W, H);
+        memcpy(blurred, next, sizeof blurred);
+        double error = mean_error(a, blurred, W, H);
+        assert_true(error > last);
+        last = error;
+    }
+}
+
+static void edge_blur_weighs_what_matters(void **state)
+{
+    (void)state;
+    static float empty[MAX_PIXELS], object[MAX_PIXELS], shaded[MAX_PIXELS];
+    uint32_t covered = 0;
+    for (uint32_t y = 0; y < H; y++) {
+        for (uint32_t x = 0; x < W; x++) {
+            bool in = x >= 15 && x < 38 && y >= 10 && y < 30;
+            covered += in;
+            empty[y * W + x] = 0.7f;
+            object[y * W + x] = in ? 0.25f : 0.7f;
+            shaded[y * W + x] = in ? 0.27f : 0.7f;
+        }
+    }
+    double missing = mean_error(object, empty, W, H) * MAX_PIXELS / covered;
+    double shade = mean_error(object, shaded, W, H) * MAX_PIXELS / covered;
+    assert_true(missing > 0.95);
+    assert_true(shade > 0.01 && shade < 0.1);
+}
+
+static void edge_blur_reaches_as_far_as_it_says(void **state)
+{
+    (void)state;
+    static float a[MAX_PIXELS], b[MAX_PIXELS], error[MAX_PIXELS];
+    memset(a, 0, sizeof a);
+    memset(b, 0, sizeof b);
+    b[20 * W + 25] = 1.0f;
+    float *scratch = prom_alloc(prom_edge_blur_scratch(W, H), sizeof *scratch);
+    prom_edge_blur(a, b, W, H, error, scratch);
+    prom_free(scratch);
+    int reach = 0;
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++)
+            if (error[y * W + x] > 0.0f) {
+                int far = abs(x - 25) > abs(y - 20) ? abs(x - 25) : abs(y - 20);
+                if (far > reach) reach = far;
+            }
+    assert_int_equal(reach, PROM_EDGE_BLUR_RADIUS);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(accuracy_of_full_geometry_is_1),
+        cmocka_unit_test(accuracy_meets_its_table_and_is_continuous),
+        cmocka_unit_test(accuracy_falls_beyond_the_measured_sizes),
+        cmocka_unit_test(near_fit_recovers_its_parameter),
+        cmocka_unit_test(footprint_of_a_full_disc),
+        cmocka_unit_test(split_keeps_the_pixels_of_a_cluster),
+        cmocka_unit_test(edge_blur_is_a_difference),
+        cmocka_unit_test(edge_blur_grows_with_blur),
+        cmocka_unit_test(edge_blur_weighs_what_matters),
+        cmocka_unit_test(edge_blur_reaches_as_far_as_it_says),
+    };
+    return cmocka_run_group_tests_name("benefit", tests, NULL, NULL);
+}
