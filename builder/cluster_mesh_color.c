@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 // Original triangles that are asked for their nearest point; of more, every k-th.
-enum { MAX_SAMPLES = 16384 };
+enum { MAX_SAMPLES = 8192 };
 
 static int by_value(const void *a, const void *b)
 {

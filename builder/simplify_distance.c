@@ -33,12 +33,14 @@ void prom_surface_finish(prom_surface *surface)
     *surface = (prom_surface){0};
 }
 
+// Written with comparisons: fminf and fmaxf are library calls and this is the hottest loop.
 static float box_distance2(const prom_box *box, const float p[3])
 {
     float d2 = 0;
     for (int a = 0; a < 3; a++) {
-        float d = fmaxf(0, fmaxf(box->min[a] - p[a], p[a] - box->max[a]));
-        d2 += d * d;
+        float below = box->min[a] - p[a], above = p[a] - box->max[a];
+        float d = below > above ? below : above;
+        d2 += d > 0 ? d * d : 0;
     }
     return d2;
 }
@@ -47,7 +49,8 @@ static float segment_parameter(const float p[3], const float a[3], const float e
 {
     float length2 = glm_vec3_norm2((float *)edge), to[3];
     glm_vec3_sub((float *)p, (float *)a, to);
-    return length2 > 0 ? glm_clamp(glm_vec3_dot(to, (float *)edge) / length2, 0, 1) : 0;
+    float t = length2 > 0 ? glm_vec3_dot(to, (float *)edge) / length2 : 0;
+    return t < 0 ? 0 : t > 1 ? 1 : t;
 }
 
 static float weighted_distance2(const float p[3], const float *corner[3], const float w[3])
@@ -148,15 +151,17 @@ static void centroid(const prom_vertex *v, const uint32_t *t, float out[3])
         out[a] = (v[t[0]].position[a] + v[t[1]].position[a] + v[t[2]].position[a]) / 3;
 }
 
-// Greatest distance of the samples of `faces` from the surface, if it exceeds `so_far`. A
-// search ends as soon as its sample cannot raise it.
+// Greatest distance of the samples of `faces` from the surface of the triangles `others`, if
+// it exceeds `so_far`. A search ends as soon as its sample cannot raise it.
 static float one_sided(const prom_work *work, const prom_index_array *faces,
-                       const prom_surface *surface, float so_far)
+                       const prom_index_array *others, const prom_surface *surface,
+                       float so_far)
 {
     const prom_vertex *v = work->vertices.data;
     size_t triangles = faces->count / 3;
-    // A vertex is met once: where it stands first in the list.
+    // A vertex is asked once, and not at all where both have it.
     uint8_t *seen = prom_calloc(work->vertices.count, 1);
+    for (size_t i = 0; i < others->count; i++) seen[others->data[i]] = 1;
     size_t stride = triangles * 3 / 2 / MAX_SAMPLES + 1;
     for (size_t t = 0; t < triangles; t += stride) {
         const uint32_t *corner = faces->data + t * 3;
@@ -182,8 +187,8 @@ float prom_work_deviation(const prom_work *work, const prom_index_array *faces)
     prom_surface before, after;
     prom_surface_init(&before, v, count, work->indices.data, work->indices.count);
     prom_surface_init(&after, v, count, faces->data, faces->count);
-    float deviation = one_sided(work, &work->indices, &after, 0);
-    deviation = one_sided(work, faces, &before, deviation);
+    float deviation = one_sided(work, &work->indices, faces, &after, 0);
+    deviation = one_sided(work, faces, &work->indices, &before, deviation);
     prom_surface_finish(&before);
     prom_surface_finish(&after);
     return deviation;
