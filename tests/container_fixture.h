@@ -224,8 +224,8 @@ static inline void fixture_ignore_stage(void *user, const char *name, uint64_t c
     (void)user, (void)name, (void)content_hash, (void)ms;
 }
 
-// Opens a file and reads all there is in it; the first error ends it.
-static inline prom_status fixture_read_all(const char *path, prom_error *error)
+// Opens a file and reads all there is in it; the first error ends it. *hash: of its content.
+static inline prom_status fixture_read_hash(const char *path, uint64_t *hash, prom_error *error)
 {
     prom_container *c = prom_container_open(path, error);
     if (!c) return error->status;
@@ -242,11 +242,16 @@ static inline prom_status fixture_read_all(const char *path, prom_error *error)
         prom_texture_finish(&texture);
     }
     if (!status) status = prom_container_stages(c, fixture_ignore_stage, NULL, error);
-    uint64_t hash;
-    if (!status) status = prom_container_content_hash(c, &hash, error);
+    if (!status) status = prom_container_content_hash(c, hash, error);
     prom_model_finish(&m);
     prom_container_close(c);
     return status;
+}
+
+static inline prom_status fixture_read_all(const char *path, prom_error *error)
+{
+    uint64_t hash;
+    return fixture_read_hash(path, &hash, error);
 }
 
 // A path of this process in the working directory; free it.
