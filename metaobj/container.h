@@ -18,11 +18,14 @@
 #define PROM_CONTAINER_APPLICATION_ID 0x50524f4d // "PROM"
 #define PROM_CONTAINER_CHUNK_BYTES (64u << 20)
 
+// A writer or container serves one thread at a time.
+
 // ---- writing
 
 typedef struct prom_writer prom_writer;
 
-// Starts PATH.part (replacing a leftover). NULL with *error if it cannot be written.
+// Starts PATH.part (replacing a leftover). NULL with *error if it cannot be written or another
+// process is writing it.
 prom_writer *prom_writer_create(const char *path, prom_error *error);
 // Closes and, unless finished, deletes PATH.part. NULL is allowed.
 void prom_writer_destroy(prom_writer *writer);
@@ -38,7 +41,8 @@ prom_status prom_writer_set_meta(prom_writer *writer, const char *key, const cha
 // A finished stage of the build: content hash of what it made, and its duration.
 prom_status prom_writer_add_stage(prom_writer *writer, const char *name, uint64_t content_hash,
                                   double ms, prom_error *error);
-// The tree and its tables; once. `model` must pass prom_model_check.
+// The tree and its tables; once, after all meshes and textures, whose counts and sizes must be
+// those of model->meshes and model->textures. `model` must pass prom_model_check.
 prom_status prom_writer_put_model(prom_writer *writer, const prom_model *model,
                                   prom_error *error);
 // Syncs, closes and renames PATH.part to PATH.
