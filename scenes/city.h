@@ -9,9 +9,9 @@
 
 typedef struct prom_city_options {
     uint64_t seed;
-    uint32_t blocks;  // along each side of the square city; 0: 4
-    uint32_t detail;  // 1 plain, 2 default (0), 3 and 4 rich: triangles per object grow
-    uint32_t styles;  // different houses; 0: 12 per detail step
+    uint32_t blocks; // along each side of the square city; 0: 4
+    uint32_t detail; // 1 plain, 2 default (0), 3 and 4 rich: triangles per object grow
+    uint32_t styles; // different houses; 0: 12 per detail step
 } prom_city_options;
 
 // Writes a .glb (atomically) and, with path_file, a street walk of 600 frames through it.
