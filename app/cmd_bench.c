@@ -81,8 +81,8 @@ static error_t parse(int key, char *text, struct argp_state *state)
 }
 
 static const struct argp_child children[] = {
-    {&prom_argp_log, 0, NULL, 0},
-    {&prom_argp_view, 0, NULL, 0},
+    {&prom_argp_log, 0, NULL, -1},
+    {&prom_argp_view, 0, "View:", 2},
     {0},
 };
 

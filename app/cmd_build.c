@@ -32,7 +32,7 @@ enum {
 };
 
 static const struct argp_option options[] = {
-    {"output", 'o', "FILE", 0, "The model to write (X.prom)", -1},
+    {"output", 'o', "FILE", 0, "The model to write (X.prom)", 0},
     {0, 0, 0, 0, "Import:", 1},
     {"max-texture-px", KEY_MAX_TEXTURE, "PX", 0, "Reduce pictures to this side (1024)", 1},
     {"import-memory-mb", KEY_IMPORT_MEMORY, "MB", 0,
@@ -177,7 +177,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
     return 0;
 }
 
-static const struct argp_child children[] = {{&prom_argp_log, 0, NULL, 0}, {0}};
+static const struct argp_child children[] = {{&prom_argp_log, 0, NULL, -1}, {0}};
 
 static const struct argp argp = {
     .options = options,

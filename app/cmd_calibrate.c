@@ -43,7 +43,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
     return 0;
 }
 
-static const struct argp_child children[] = {{&prom_argp_log, 0, NULL, 0}, {0}};
+static const struct argp_child children[] = {{&prom_argp_log, 0, NULL, -1}, {0}};
 
 static const struct argp argp = {
     .options = options,

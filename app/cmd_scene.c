@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <sys/stat.h>
 
-static const struct argp_child children[] = {{&prom_argp_log, 0, NULL, 0}, {0}};
+static const struct argp_child children[] = {{&prom_argp_log, 0, NULL, -1}, {0}};
 
 // ---- city
 
@@ -22,7 +22,7 @@ typedef struct city_options {
 enum { KEY_SEED = 0x1000, KEY_SIZE, KEY_DETAIL, KEY_STYLES, KEY_PATH, KEY_GRID, KEY_SPACING };
 
 static const struct argp_option city_table[] = {
-    {"output", 'o', "FILE", 0, "The scene to write (X.glb)", -1},
+    {"output", 'o', "FILE", 0, "The scene to write (X.glb)", 0},
     {"path", KEY_PATH, "FILE", 0, "Also write a walk of 600 frames along its streets", 0},
     {"seed", KEY_SEED, "N", 0, "Another number gives another city (1)", 0},
     {"size", KEY_SIZE, "N", 0, "Blocks along each side (4)", 0},
@@ -95,7 +95,7 @@ typedef struct tile_options {
 } tile_options;
 
 static const struct argp_option tile_table[] = {
-    {"output", 'o', "FILE", 0, "The scene to write (X.glb)", -1},
+    {"output", 'o', "FILE", 0, "The scene to write (X.glb)", 0},
     {"grid", KEY_GRID, "NxM", 0, "Tiles along x and z", 0},
     {"spacing", KEY_SPACING, "X,Z", 0,
      "Distance from tile to tile (the layout without its backdrop)", 0},

@@ -23,7 +23,7 @@ typedef struct shot_options {
 enum { KEY_FRAME = 0x1000, KEY_EYE, KEY_LOOK_AT, KEY_FALSE_COLOURS, KEY_WIREFRAME };
 
 static const struct argp_option options[] = {
-    {"output", 'o', "FILE", 0, "The picture to write (PNG)", -1},
+    {"output", 'o', "FILE", 0, "The picture to write (PNG)", 0},
     {"frame", KEY_FRAME, "N", 0, "Frame of the path, from 0 (0)", 0},
     {"eye", KEY_EYE, "X,Y,Z", 0, "Instead of a path: the camera's place", 0},
     {"look-at", KEY_LOOK_AT, "X,Y,Z", 0, "With --eye: a point to look at", 0},
@@ -86,8 +86,8 @@ static error_t parse(int key, char *text, struct argp_state *state)
 }
 
 static const struct argp_child children[] = {
-    {&prom_argp_log, 0, NULL, 0},
-    {&prom_argp_view, 0, NULL, 0},
+    {&prom_argp_log, 0, NULL, -1},
+    {&prom_argp_view, 0, "View:", 2},
     {0},
 };
 

@@ -94,8 +94,8 @@ static error_t parse_log(int key, char *text, struct argp_state *state)
 }
 
 static const struct argp_option log_options[] = {
-    {"quiet", 'q', NULL, 0, "Warnings and errors only on stderr", -2},
-    {"verbose", 'v', NULL, 0, "More on stderr", -2},
+    {"quiet", 'q', NULL, 0, "Warnings and errors only on stderr", 0},
+    {"verbose", 'v', NULL, 0, "More on stderr", 0},
     {0},
 };
 
