@@ -128,7 +128,7 @@ void prom_baker_take_views(prom_baker *baker, float radius, prom_views *views)
             .height = PROM_VIEW_PX,
             .output = PROM_OUTPUT_LIT,
         };
-        orthographic(right, up, out, radius, radius, radius * 1.01f, pass.projection);
+        orthographic(right, up, out, radius, radius, 2.0f * radius, pass.projection);
         prom_draw_list_submit(baker->list, baker->target, &pass);
     }
     prom_target_read_rgba(baker->target, 0, 0, ATLAS_PX, ATLAS_PX, baker->rgba);
@@ -151,12 +151,12 @@ void prom_baker_take_faces(prom_baker *baker, const float half[3], prom_output o
                         fabsf(axes[a][2]) * half[2];
         prom_pass pass = {
             .x = (uint32_t)face * PROM_VIEW_PX,
-            .y = ATLAS_PX - size_px,
+            .y = 0,
             .width = size_px,
             .height = size_px,
             .output = output,
         };
-        orthographic(right, up, out, extent[0], extent[1], extent[2] * 1.01f, pass.projection);
+        orthographic(right, up, out, extent[0], extent[1], extent[2] * 1.1f, pass.projection);
         prom_draw_list_submit(baker->list, baker->target, &pass);
     }
     for (uint32_t face = 0; face < 6; face++)

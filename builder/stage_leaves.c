@@ -90,15 +90,6 @@ prom_status prom_stage_levels(prom_build_state *b, prom_error *error)
     return PROM_OK;
 }
 
-// The sphere around the bounds' centre that holds every vertex.
-static float radius_around(const prom_mesh *mesh, const float center[3])
-{
-    float r2 = 0;
-    for (uint32_t i = 0; i < mesh->vertex_count; i++)
-        r2 = fmaxf(r2, glm_vec3_distance2(mesh->vertices[i].position, (float *)center));
-    return fmaxf(sqrtf(r2), 1e-6f);
-}
-
 static uint32_t flags_of_layer(prom_layer layer)
 {
     static const uint32_t flags[PROM_LAYER_COUNT] = {
@@ -128,7 +119,8 @@ static prom_status add_leaf(prom_build_state *b, uint32_t p, prom_error *error)
     prom_box bounds = prom_mesh_bounds(&s->levels[0]);
     prom_box_center(&bounds, proto->center);
     prom_box_half(&bounds, proto->half);
-    proto->radius = radius_around(&s->levels[0], proto->center);
+    // The sphere around the box, not around the vertices: impostors fill the box.
+    proto->radius = fmaxf(glm_vec3_norm(proto->half), 1e-6f);
 
     for (uint32_t l = 0; l < s->level_count; l++) {
         uint32_t id;
