@@ -1,5 +1,5 @@
 // LINK: prom_metaobj
-// Geometry helpers, meshes, textures, view bins, the camera and the model's check.
+// Geometry helpers, colours, meshes, view bins, the camera and the cut.
 #include "container_fixture.h"
 
 #include "metaobj/camera.h"
@@ -8,7 +8,6 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
-#include <stdlib.h>
 
 #include <cmocka.h>
 
@@ -274,124 +273,6 @@ static void packed_normals(void **state)
     assert_memory_equal(packed, ((int8_t[]){-127, 0, 0, 0}), 4);
 }
 
-static double share_above(const prom_texture *t, uint32_t level, int cutoff)
-{
-    uint32_t w = t->width >> level, h = t->height >> level;
-    size_t n = (size_t)(w ? w : 1) * (h ? h : 1), above = 0;
-    const uint8_t *p = t->pixels + prom_texture_offset(t, level, 0);
-    for (size_t i = 0; i < n; i++) above += p[4 * i + 3] >= cutoff;
-    return (double)above / (double)n;
-}
-
-static void mips_keep_coverage(void **state)
-{
-    (void)state;
-    uint32_t seed = 4;
-    prom_texture t;
-    prom_texture_init(&t, PROM_TEXTURE_COLOR, 256, 128);
-    for (size_t i = 0; i < 256 * 128; i++) { // foliage: 30 % of the texels, scattered
-        memset(t.pixels + 4 * i, 200, 3);
-        t.pixels[4 * i + 3] = fixture_random(&seed) % 10 < 3 ? 255 : 0;
-    }
-    prom_texture_make_mips(&t, 0.5f);
-    double share = share_above(&t, 0, 128);
-    for (uint32_t level = 1; level < 6; level++)
-        assert_float_equal(share_above(&t, level, 128), share, 0.08);
-    prom_texture_make_mips(&t, 0);
-    assert_true(share_above(&t, 3, 128) < 0.01); // without it they thin out
-    prom_texture_finish(&t);
-}
-
-static void mips_average_light(void **state)
-{
-    (void)state;
-    prom_texture t;
-    prom_texture_init(&t, PROM_TEXTURE_COLOR, 7, 5); // odd sizes shrink without a shift
-    assert_int_equal(t.levels, 3);
-    for (int y = 0; y < 5; y++)
-        for (int x = 0; x < 7; x++) {
-            uint8_t *p = t.pixels + 4 * (y * 7 + x);
-            p[0] = p[1] = p[2] = (x + y) % 2 ? 255 : 0;
-            p[3] = 255;
-        }
-    prom_texture_make_mips(&t, 0.5f);
-    const uint8_t *last = t.pixels + prom_texture_offset(&t, 2, 0);
-    assert_float_equal(prom_srgb8_to_linear(last[0]), (17.0f / 35), 0.05f);
-    assert_int_equal(last[3], 255);
-    prom_texture_finish(&t);
-    // Colour of uncovered texels does not come through.
-    prom_texture_init(&t, PROM_TEXTURE_COLOR, 2, 2);
-    memcpy(t.pixels,
-           (uint8_t[]){10, 20, 30, 255, 255, 0, 255, 0, 255, 0, 255, 0, 10, 20, 30, 255}, 16);
-    prom_texture_make_mips(&t, 0);
-    assert_memory_equal(t.pixels + 16, ((uint8_t[]){10, 20, 30, 128}), 4);
-    prom_texture_finish(&t);
-}
-
-static void mips_of_normals(void **state)
-{
-    (void)state;
-    prom_texture t;
-    prom_texture_init(&t, PROM_TEXTURE_IMPOSTOR_ALBEDO, 2, 2);
-    uint8_t *p = t.pixels + prom_texture_offset(&t, 0, 7);
-    for (int i = 0; i < 4; i++) // half +x, half +z
-        memcpy(p + 4 * i,
-               i % 2 ? (uint8_t[]){255, 128, 128, 255} : (uint8_t[]){128, 128, 255, 255}, 4);
-    prom_texture_make_mips(&t, 0);
-    const uint8_t *q = t.pixels + prom_texture_offset(&t, 1, 7);
-    assert_true(abs(q[0] - 218) <= 1 && abs(q[1] - 128) <= 1 && abs(q[2] - 218) <= 1);
-    assert_int_equal(q[3], 255);
-    prom_texture_finish(&t);
-}
-
-static void texture_sizes(void **state)
-{
-    (void)state;
-    prom_texture t;
-    prom_texture_init(&t, PROM_TEXTURE_IMPOSTOR_LIT, 5, 3);
-    assert_int_equal(t.levels, 3);
-    assert_int_equal(prom_texture_bytes(&t), 6 * 4 * (15 + 2 + 1));
-    assert_int_equal(prom_texture_offset(&t, 1, 2), 4 * (6 * 15 + 2 * 2));
-    prom_texture wrong = t;
-    wrong.layers = 5;
-    assert_int_equal(prom_texture_bytes(&wrong), 0);
-    wrong = t;
-    wrong.levels = 4;
-    assert_int_equal(prom_texture_bytes(&wrong), 0);
-    wrong = t;
-    wrong.width = PROM_TEXTURE_MAX + 1;
-    assert_int_equal(prom_texture_bytes(&wrong), 0);
-    wrong = t;
-    wrong.kind = PROM_TEXTURE_KIND_COUNT;
-    assert_int_equal(prom_texture_bytes(&wrong), 0);
-    prom_texture_finish(&t);
-}
-
-static void dilation(void **state)
-{
-    (void)state;
-    prom_texture t;
-    prom_texture_init(&t, PROM_TEXTURE_COLOR, 16, 16);
-    for (int i = 0; i < 256; i++) memcpy(t.pixels + 4 * i, (uint8_t[]){255, 0, 255, 0}, 4);
-    uint8_t *left = t.pixels + 4 * (8 * 16 + 2), *right = t.pixels + 4 * (8 * 16 + 13);
-    memcpy(left, (uint8_t[]){100, 0, 0, 255}, 4);
-    memcpy(right, (uint8_t[]){0, 100, 0, 255}, 4);
-    prom_texture_dilate(&t, 2);
-    for (int i = 0; i < 256; i++) {
-        const uint8_t *p = t.pixels + 4 * i;
-        int x = i % 16, y = i / 16, dl = abs(x - 2), dr = abs(x - 13), dy = abs(y - 8);
-        bool covered = dy == 0 && (dl == 0 || dr == 0);
-        assert_int_equal(p[3], covered ? 255 : 0); // alpha stays
-        if (dl <= 2 && dy <= 2)
-            assert_memory_equal(p, ((uint8_t[]){100, 0, 0}), 3);
-        else if (dr <= 2 && dy <= 2)
-            assert_memory_equal(p, ((uint8_t[]){0, 100, 0}), 3);
-        else // the mean, in linear light
-            assert_true(p[0] == p[1] && p[0] > 60 && p[0] < 80 && p[2] == 0);
-    }
-    prom_texture_finish(&t);
-}
-
 static void camera_looks_at(void **state)
 {
     (void)state;
@@ -419,110 +300,6 @@ static void camera_looks_at(void **state)
     assert_true(c.orientation[3] == 1);
 }
 
-static void bounds_hold_children(void **state)
-{
-    (void)state;
-    fixture f;
-    fixture_init(&f, 6, 9);
-    prom_model *m = &f.model;
-    uint32_t seed = 8;
-    for (uint32_t n = 0; n < m->node_count; n++)
-        for (int i = 0; i < 12; i++) {
-            if (i < 9)
-                m->placement[n].basis[i] = random_unit(&seed) * 3;
-            else
-                m->placement[n].origin[i - 9] = 1e5 + random_unit(&seed) * 500;
-        }
-    prom_model_update_bounds(m);
-    uint64_t row;
-    assert_null(prom_model_check(m, &row));
-    for (uint32_t n = 1; n < m->tree_count; n++) {
-        uint32_t p = m->parent[n];
-        double square = 0;
-        for (int a = 0; a < 3; a++) {
-            double d = fabs(m->center[n][a] - m->center[p][a]);
-            square += d * d;
-            assert_true(d + m->half[n][a] <= m->half[p][a] + 1e-9);
-        }
-        assert_true(m->radius[p] <= sqrt(square) + m->radius[n] || m->child_count[p] > 1);
-        double diagonal = 0;
-        for (int a = 0; a < 3; a++) diagonal += (double)m->half[p][a] * m->half[p][a];
-        assert_true(m->radius[p] <= sqrt(diagonal) * 1.000001);
-    }
-    fixture_finish(&f);
-}
-
-// Applies one change to a good model and wants it refused.
-#define assert_refused(change)                                                                 \
-    do {                                                                                       \
-        fixture f;                                                                             \
-        fixture_init(&f, 3, 4);                                                                \
-        prom_model *m = &f.model;                                                              \
-        uint64_t row = 0;                                                                      \
-        assert_null(prom_model_check(m, &row));                                                \
-        change;                                                                                \
-        assert_non_null(prom_model_check(m, &row));                                            \
-        fixture_finish(&f);                                                                    \
-    } while (0)
-
-static void model_check(void **state)
-{
-    (void)state;
-    assert_refused(m->tree_count = 0);
-    assert_refused(m->tree_count = m->node_count + 1);
-    assert_refused(m->tree_count = m->node_count);     // the backdrop is nobody's child
-    assert_refused(m->tree_count = m->node_count - 2); // a child in the background
-    assert_refused(m->parent[0] = 0);
-    assert_refused(m->parent[6] = 2);
-    assert_refused(m->parent[6] = 6);
-    assert_refused(m->parent[6] = PROM_NONE);
-    assert_refused(m->parent[m->node_count - 1] = 0);
-    assert_refused(m->first_child[1] = 1);
-    assert_refused(m->first_child[1] = PROM_NONE);
-    assert_refused(m->first_child[5] = 6);
-    assert_refused(m->child_count[1] = UINT32_MAX);
-    assert_refused(m->child_count[3] = 5);
-    assert_refused(m->prototype[5] = 4);
-    assert_refused(m->prototype[5] = 1); // a cluster's
-    assert_refused(m->prototype[1] = 2); // three children, not four
-    assert_refused(m->name[2] = m->names_bytes);
-    assert_refused(m->names[m->names_bytes - 1] = 'x');
-    assert_refused(m->names[0] = 'x');
-    assert_refused(m->placement[4].origin[1] = NAN);
-    assert_refused(m->placement[4].basis[8] = INFINITY);
-    assert_refused(m->center[4][0] = NAN);
-    assert_refused(m->half[4][0] = -1);
-    assert_refused(m->radius[4] = NAN);
-    assert_refused(m->prototypes[0].rep_count = 4);
-    assert_refused(m->prototypes[0].rep_count = 2);
-    assert_refused(m->prototypes[3].first_rep = UINT32_MAX);
-    assert_refused(m->prototypes[1].first_share = PROM_NONE);
-    assert_refused(m->prototypes[1].first_share = 4);
-    assert_refused(m->prototypes[0].first_share = 0);
-    assert_refused(m->prototypes[0].flags = PROM_PROTO_CLUSTER);
-    assert_refused(m->prototypes[0].radius = -1);
-    assert_refused(m->prototypes[0].center[2] = NAN);
-    assert_refused(m->reps[5].kind = PROM_REP_AVERAGE_BOX); // a leaf without a mesh
-    assert_refused(m->reps[0].kind = PROM_REP_KIND_COUNT);
-    assert_refused(m->reps[0].mesh = m->mesh_count);
-    assert_refused(m->reps[0].texture = m->texture_count);
-    assert_refused(m->reps[2].texture = PROM_NONE);
-    assert_refused(m->reps[2].texture = 0);
-    assert_refused(m->reps[0].shading = PROM_SHADE_COUNT);
-    assert_refused(m->reps[0].error = -1);
-    assert_refused(m->reps[0].error = INFINITY);
-    assert_refused(m->reps[0].max_size_px = 0);
-    assert_refused(m->reps[0].max_size_px = NAN);
-    assert_refused(m->reps[0].near_k = -0.5f);
-    assert_refused(m->materials[0].texture = 1);
-    assert_refused(m->materials[0].texture = 2);
-    assert_refused(m->materials[0].alpha_mode = 3);
-    assert_refused(m->materials[0].base_color[1] = NAN);
-    assert_refused(m->meshes[0].index_count++);
-    assert_refused(m->textures[0].levels--);
-    assert_refused(m->textures[0].width = 0);
-}
-
 static void kind_names(void **state)
 {
     (void)state;
@@ -539,25 +316,12 @@ static void kind_names(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(boxes),
-        cmocka_unit_test(bases),
-        cmocka_unit_test(placements),
-        cmocka_unit_test(octahedral_map),
-        cmocka_unit_test(direction_bins),
-        cmocka_unit_test(srgb_curve),
-        cmocka_unit_test(box_mesh),
-        cmocka_unit_test(mesh_check),
-        cmocka_unit_test(mesh_hash),
-        cmocka_unit_test(packed_normals),
-        cmocka_unit_test(mips_keep_coverage),
-        cmocka_unit_test(mips_average_light),
-        cmocka_unit_test(mips_of_normals),
-        cmocka_unit_test(texture_sizes),
-        cmocka_unit_test(dilation),
-        cmocka_unit_test(camera_looks_at),
-        cmocka_unit_test(bounds_hold_children),
-        cmocka_unit_test(model_check),
-        cmocka_unit_test(kind_names),
+        cmocka_unit_test(boxes),           cmocka_unit_test(bases),
+        cmocka_unit_test(placements),      cmocka_unit_test(octahedral_map),
+        cmocka_unit_test(direction_bins),  cmocka_unit_test(srgb_curve),
+        cmocka_unit_test(box_mesh),        cmocka_unit_test(mesh_check),
+        cmocka_unit_test(mesh_hash),       cmocka_unit_test(packed_normals),
+        cmocka_unit_test(camera_looks_at), cmocka_unit_test(kind_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
