@@ -1,0 +1,390 @@
+// LINK: prom_traverse prom_metaobj
+// The cost model's fit, its profile files and the governor.
+#include "random_model.h"
+#include "traverse/governor.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+enum { SAMPLES = 240 };
+
+// Scenes as a calibration draws them, timed by a known model with the given relative noise.
+static void make_samples(const prom_cost_model *truth, uint64_t *seed, double noise,
+                         prom_cost_sample samples[SAMPLES])
+{
+    for (int i = 0; i < SAMPLES; i++) {
+        prom_cost_features *f = &samples[i].features;
+        double triangles = pow(10.0, random_between(seed, 2, 6));
+        *f = (prom_cost_features){.fixed = 1,
+                                  .draws = 1 + random_below(seed, 3000),
+                                  .vertices = triangles * random_between(seed, 0.5f, 2.5f),
+                                  .triangles = triangles};
+        for (int k = 0; k < PROM_SHADE_COUNT; k++)
+            if (random_below(seed, 2)) f->pixels[k] = random_between(seed, 0, 3e6f);
+        double factor = 1.0 + noise * (random_unit(seed) + random_unit(seed) - 1.0);
+        samples[i].ms = prom_cost_predict(truth, f) * factor;
+    }
+}
+
+static bool near_to(double value, double truth, double relative)
+{
+    return fabs(value - truth) <= relative * truth + 1e-12;
+}
+
+static void the_fit_recovers_a_known_model(void **state)
+{
+    (void)state;
+    uint64_t seed = 1;
+    static prom_cost_sample samples[SAMPLES];
+    for (int round = 0; round < 30; round++) {
+        prom_cost_model truth = random_cost(&seed), fit;
+        make_samples(&truth, &seed, 0.0, samples);
+        assert_int_equal(prom_cost_fit(samples, SAMPLES, &fit, NULL), PROM_OK);
+        assert_true(near_to(fit.fixed_ms, truth.fixed_ms, 1e-3));
+        assert_true(near_to(fit.draw_ms, truth.draw_ms, 1e-3));
+        assert_true(near_to(fit.vertex_ms, truth.vertex_ms, 1e-3));
+        assert_true(near_to(fit.triangle_ms, truth.triangle_ms, 1e-3));
+        for (int k = 0; k < PROM_SHADE_COUNT; k++)
+            assert_true(near_to(fit.pixel_ms[k], truth.pixel_ms[k], 1e-3));
+        assert_true(fit.mean_error < 1e-4 && fit.worst_under < 1e-3);
+        assert_int_equal(fit.sample_count, SAMPLES);
+
+        make_samples(&truth, &seed, 0.1, samples);
+        assert_int_equal(prom_cost_fit(samples, SAMPLES, &fit, NULL), PROM_OK);
+        double error = 0.0;
+        for (int i = 0; i < SAMPLES; i++)
+            error += fabs(prom_cost_predict(&fit, &samples[i].features) /
+                              prom_cost_predict(&truth, &samples[i].features) -
+                          1.0);
+        assert_true(error / SAMPLES < 0.02);
+        assert_true(fit.mean_error > 0.01 && fit.mean_error < 0.06);
+    }
+}
+
+static void coefficients_are_never_negative(void **state)
+{
+    (void)state;
+    uint64_t seed = 2;
+    static prom_cost_sample samples[SAMPLES];
+    for (int round = 0; round < 200; round++) {
+        prom_cost_model truth = random_cost(&seed), fit;
+        // Some things cost nothing: noise must not make them pay.
+        if (random_below(&seed, 2)) truth.vertex_ms = 0.0;
+        if (random_below(&seed, 2)) truth.draw_ms = 0.0;
+        if (random_below(&seed, 2)) truth.pixel_ms[PROM_SHADE_BLENDED] = 0.0;
+        make_samples(&truth, &seed, 0.5, samples);
+        size_t count = 12 + random_below(&seed, SAMPLES - 12);
+        assert_int_equal(prom_cost_fit(samples, count, &fit, NULL), PROM_OK);
+        assert_true(fit.fixed_ms >= 0 && fit.draw_ms >= 0 && fit.vertex_ms >= 0 &&
+                    fit.triangle_ms >= 0);
+        for (int k = 0; k < PROM_SHADE_COUNT; k++) assert_true(fit.pixel_ms[k] >= 0);
+        assert_true(isfinite(fit.mean_error) && isfinite(fit.worst_under));
+    }
+}
+
+// No other non-negative model near by may explain the samples better.
+static void the_fit_is_a_minimum(void **state)
+{
+    (void)state;
+    uint64_t seed = 3;
+    static prom_cost_sample samples[SAMPLES];
+    for (int round = 0; round < 50; round++) {
+        prom_cost_model truth = random_cost(&seed), fit;
+        truth.vertex_ms = 0.0;
+        make_samples(&truth, &seed, 0.4, samples);
+        assert_int_equal(prom_cost_fit(samples, SAMPLES, &fit, NULL), PROM_OK);
+        double at[9], least = -1.0;
+        double *fields[9] = {&fit.fixed_ms, &fit.draw_ms, &fit.vertex_ms, &fit.triangle_ms};
+        for (int k = 0; k < PROM_SHADE_COUNT; k++) fields[4 + k] = &fit.pixel_ms[k];
+        for (int a = 0; a < 9; a++) at[a] = *fields[a];
+        for (int try = 0; try < 37; try++) {
+            for (int a = 0; a < 9; a++) *fields[a] = at[a];
+            if (try) {
+                double *x = fields[(try - 1) % 9];
+                double size = try <= 18 ? 1e-2 : 1e-4;
+                double change = size * (*x > 0 ? *x : truth.triangle_ms);
+                *x += (try - 1) / 9 % 2 ? change : -change;
+                if (*x < 0) continue;
+            }
+            double sum = 0.0;
+            for (int i = 0; i < SAMPLES; i++) {
+                double e = prom_cost_predict(&fit, &samples[i].features) / samples[i].ms - 1.0;
+                sum += e * e;
+            }
+            if (!try)
+                least = sum;
+            else
+                assert_true(sum >= least * (1.0 - 1e-9));
+        }
+    }
+}
+
+static void kinds_without_samples_cost_what_textures_do(void **state)
+{
+    (void)state;
+    uint64_t seed = 4;
+    static prom_cost_sample samples[SAMPLES];
+    prom_cost_model truth = random_cost(&seed), fit;
+    make_samples(&truth, &seed, 0.0, samples);
+    for (int i = 0; i < SAMPLES; i++) {
+        samples[i].features.pixels[PROM_SHADE_BLENDED] = 0;
+        samples[i].features.pixels[PROM_SHADE_IMPOSTOR] = 0;
+        samples[i].ms = prom_cost_predict(&truth, &samples[i].features);
+    }
+    assert_int_equal(prom_cost_fit(samples, SAMPLES, &fit, NULL), PROM_OK);
+    assert_true(fit.pixel_ms[PROM_SHADE_BLENDED] == fit.pixel_ms[PROM_SHADE_TEXTURED]);
+    assert_true(fit.pixel_ms[PROM_SHADE_IMPOSTOR] == fit.pixel_ms[PROM_SHADE_TEXTURED]);
+    assert_true(
+        near_to(fit.pixel_ms[PROM_SHADE_TEXTURED], truth.pixel_ms[PROM_SHADE_TEXTURED], 1e-3));
+}
+
+static void unusable_samples_are_refused(void **state)
+{
+    (void)state;
+    uint64_t seed = 5;
+    static prom_cost_sample samples[SAMPLES];
+    prom_cost_model truth = random_cost(&seed), fit = {.fixed_ms = 7};
+    prom_error error = {0};
+    make_samples(&truth, &seed, 0.1, samples);
+    assert_int_equal(prom_cost_fit(samples, 5, &fit, &error), PROM_ERR_INPUT);
+    assert_non_null(strstr(error.text, "too few"));
+    assert_int_equal(prom_cost_fit(NULL, 0, &fit, &error), PROM_ERR_INPUT);
+    const double bad[] = {0.0, -1.0, NAN, INFINITY};
+    for (size_t i = 0; i < 4; i++) {
+        double kept = samples[9].ms;
+        samples[9].ms = bad[i];
+        assert_int_equal(prom_cost_fit(samples, SAMPLES, &fit, &error), PROM_ERR_INPUT);
+        assert_non_null(strstr(error.text, "sample 10 of 240"));
+        samples[9].ms = kept;
+    }
+    samples[3].features.triangles = NAN;
+    assert_int_equal(prom_cost_fit(samples, SAMPLES, &fit, &error), PROM_ERR_INPUT);
+    assert_true(fit.fixed_ms == 7);
+}
+
+// ---- profile files
+
+static char folder[] = "/tmp/prom_test_cost_XXXXXX";
+static char path[256];
+
+static int make_folder(void **state)
+{
+    (void)state;
+    if (!mkdtemp(folder)) return -1;
+    snprintf(path, sizeof path, "%s/profile.json", folder);
+    return 0;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    char *command = prom_format("rm -rf %s", folder);
+    int rc = system(command);
+    prom_free(command);
+    return rc;
+}
+
+static char *read_text(void)
+{
+    FILE *f = fopen(path, "rb");
+    assert_non_null(f);
+    char *text = prom_calloc(1, 65536);
+    assert_true(fread(text, 1, 65535, f) > 0);
+    fclose(f);
+    return text;
+}
+
+static void write_text(const char *text, size_t bytes)
+{
+    remove(path); // truncating would make the file system flush
+    FILE *f = fopen(path, "wb");
+    assert_non_null(f);
+    assert_int_equal(fwrite(text, 1, bytes, f), bytes);
+    fclose(f);
+}
+
+static prom_cost_model some_profile(void)
+{
+    uint64_t seed = 6;
+    prom_cost_model m = random_cost(&seed);
+    m.mean_error = 0.0532;
+    m.worst_under = 0.186;
+    m.margin = 0.1;
+    m.sample_count = 260;
+    strcpy(m.renderer, "llvmpipe (LLVM 15.0.6, 256 bits)");
+    return m;
+}
+
+static void profiles_come_back_as_they_went(void **state)
+{
+    (void)state;
+    prom_cost_model saved = some_profile(), loaded = {0};
+    prom_error error = {0};
+    assert_int_equal(prom_cost_save(&saved, path, &error), PROM_OK);
+    assert_int_equal(prom_cost_load(path, &loaded, &error), PROM_OK);
+    assert_memory_equal(&saved, &loaded, offsetof(prom_cost_model, renderer));
+    assert_string_equal(saved.renderer, loaded.renderer);
+    // A second one replaces it, and no other file stays behind.
+    assert_int_equal(prom_cost_save(&saved, path, &error), PROM_OK);
+    char *command = prom_format("test $(ls -A %s | wc -l) = 1", folder);
+    assert_int_equal(system(command), 0);
+    prom_free(command);
+}
+
+static void profiles_that_cannot_be_written(void **state)
+{
+    (void)state;
+    prom_cost_model m = some_profile();
+    prom_error error = {0};
+    assert_int_equal(prom_cost_save(&m, "/nowhere/at/all.json", &error), PROM_ERR_OUTPUT);
+    assert_non_null(strstr(error.text, "/nowhere/at/all.json"));
+    m.draw_ms = NAN;
+    assert_int_equal(prom_cost_save(&m, path, &error), PROM_ERR_INPUT);
+    assert_non_null(strstr(error.text, "draw_ms"));
+}
+
+static void broken_profiles_are_refused(void **state)
+{
+    (void)state;
+    prom_cost_model m = some_profile(), loaded = {.fixed_ms = 7};
+    prom_error error = {0};
+    assert_int_equal(prom_cost_load("/nowhere.json", &loaded, &error), PROM_ERR_INPUT);
+    assert_int_equal(prom_cost_load(folder, &loaded, &error), PROM_ERR_INPUT);
+    assert_int_equal(prom_cost_save(&m, path, &error), PROM_OK);
+    char *text = read_text();
+    size_t bytes = strlen(text);
+
+    // Truncated anywhere before the last brace.
+    for (size_t cut = 0; cut + 2 < bytes; cut++) {
+        write_text(text, cut);
+        assert_int_equal(prom_cost_load(path, &loaded, &error), PROM_ERR_INPUT);
+        assert_non_null(strstr(error.text, path));
+    }
+    // Any byte changed: never a crash, and never a number out of range.
+    uint64_t seed = 7;
+    for (int i = 0; i < 1000; i++) {
+        char *broken = prom_strdup(text);
+        broken[random_below(&seed, (uint32_t)bytes)] = (char)random_below(&seed, 256);
+        write_text(broken, bytes);
+        prom_cost_model other = {0};
+        if (prom_cost_load(path, &other, &error) == PROM_OK)
+            assert_true(other.overdraw >= 1 && other.margin >= 0 && other.margin < 1 &&
+                        other.fixed_ms >= 0 && isfinite(other.triangle_ms));
+        prom_free(broken);
+    }
+    // Single keys made wrong.
+    const char *const wrong[][2] = {
+        {"\"fixed_ms\": ", "\"fixed_ms\": -"},
+        {"\"margin\": 0.1", "\"margin\": 1.5"},
+        {"\"overdraw\": ", "\"overdraw\": 0.0"},
+        {"\"version\": 1", "\"version\": 2"},
+        {"promenade-cost", "other-cost"},
+        {"\"draw_ms\": ", "\"draw_ms\": \"x\", \"y\": "},
+        {"\"masked\"", "\"mask\""},
+        {"{\n", "{\n\"more\": 1,"},
+        {"\"vertex_ms\": ", "\"vertex_ms\": 1e300, \"z\": "},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        char *at = strstr(text, wrong[i][0]);
+        assert_non_null(at);
+        char *broken = prom_format("%.*s%s%s", (int)(at - text), text, wrong[i][1],
+                                   at + strlen(wrong[i][0]));
+        write_text(broken, strlen(broken));
+        prom_free(broken);
+        assert_int_equal(prom_cost_load(path, &loaded, &error), PROM_ERR_INPUT);
+    }
+    assert_true(loaded.fixed_ms == 7);
+    prom_free(text);
+}
+
+static void profiles_have_a_place(void **state)
+{
+    (void)state;
+    char *cache = prom_format("%s/cache/deep", folder);
+    setenv("XDG_CACHE_HOME", cache, 1);
+    char *place = prom_cost_cache_path("llvmpipe (LLVM 15.0.6, 256 bits)", 1280, 720);
+    char *expected =
+        prom_format("%s/promenade/llvmpipe-LLVM-15.0.6-256-bits-1280x720.json", cache);
+    assert_string_equal(place, expected);
+    prom_cost_model m = some_profile();
+    assert_int_equal(prom_cost_save(&m, place, NULL), PROM_OK);
+    prom_free(expected);
+    prom_free(place);
+
+    setenv("XDG_CACHE_HOME", "relative", 1); // the standard says: ignore it
+    setenv("HOME", folder, 1);
+    place = prom_cost_cache_path("../../x", 640, 360);
+    expected = prom_format("%s/.cache/promenade/x-640x360.json", folder);
+    assert_string_equal(place, expected);
+    prom_free(expected);
+    prom_free(place);
+
+    unsetenv("HOME");
+    assert_null(prom_cost_cache_path("x", 1, 1));
+    prom_free(cache);
+}
+
+// ---- governor
+
+static void the_governor_follows_the_device(void **state)
+{
+    (void)state;
+    prom_governor g;
+    prom_governor_init(&g, 0.1);
+    assert_true(fabs(prom_governor_budget(&g, 20) - 18) < 1e-9);
+    // The device turns out twice as slow: within three frames the frame fits again.
+    for (int i = 0; i < 3; i++) prom_governor_feed(&g, 10, 20, 1);
+    double predicted = prom_governor_budget(&g, 20);
+    assert_true(predicted * 2 + 1 <= 20);
+    // It gets quicker again: the budget is used again, more slowly.
+    prom_governor_feed(&g, 10, 10, 1);
+    assert_true(g.ratio > 1.5);
+    for (int i = 0; i < 12; i++) prom_governor_feed(&g, 10, 10, 1);
+    assert_true(fabs(g.ratio - 1) < 0.05 && fabs(g.select_ms - 1) < 0.05);
+}
+
+static void the_governor_stays_in_its_bounds(void **state)
+{
+    (void)state;
+    prom_governor g;
+    prom_governor_init(&g, 0.1);
+    for (int i = 0; i < 50; i++) prom_governor_feed(&g, 1, 1e6, 0.1);
+    assert_true(g.ratio <= 4.0 && g.ratio > 3.9);
+    for (int i = 0; i < 50; i++) prom_governor_feed(&g, 1e6, 1, 0.1);
+    assert_true(g.ratio >= 0.25 && g.ratio < 0.26);
+    double ratio = g.ratio;
+    const double odd[] = {0.0, -1.0, NAN, INFINITY};
+    for (int i = 0; i < 4; i++) {
+        prom_governor_feed(&g, odd[i], 5, 0.1);
+        prom_governor_feed(&g, 5, odd[i], 0.1);
+    }
+    prom_governor_feed(&g, 1e6, 1, NAN);
+    assert_true(fabs(g.ratio - ratio) < 0.01 && isfinite(g.select_ms));
+    prom_governor_feed(&g, 1, 1, 1000);
+    assert_true(prom_governor_budget(&g, 20) == 0.0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_fit_recovers_a_known_model),
+        cmocka_unit_test(coefficients_are_never_negative),
+        cmocka_unit_test(the_fit_is_a_minimum),
+        cmocka_unit_test(kinds_without_samples_cost_what_textures_do),
+        cmocka_unit_test(unusable_samples_are_refused),
+        cmocka_unit_test(profiles_come_back_as_they_went),
+        cmocka_unit_test(profiles_that_cannot_be_written),
+        cmocka_unit_test(broken_profiles_are_refused),
+        cmocka_unit_test(profiles_have_a_place),
+        cmocka_unit_test(the_governor_follows_the_device),
+        cmocka_unit_test(the_governor_stays_in_its_bounds),
+    };
+    return cmocka_run_group_tests_name("cost", tests, make_folder, remove_folder);
+}
