@@ -11,7 +11,14 @@
 #define SAMPLE_MS 5.0 // each sample is drawn for at least this long
 #define MIN_REPEATS 3
 #define MAX_REPEATS 64
-#define FIXED_SAMPLES 3 // empty frames, per effort
+#define FIXED_SAMPLES 5u // empty frames
+#define PASSES 2
+
+static size_t sample_count(int effort)
+{
+    static const size_t per_shading[] = {12, 24, 40}; // 65, 125 and 205 samples in all
+    return FIXED_SAMPLES + per_shading[effort - 1] * PROM_SHADE_COUNT;
+}
 
 typedef struct calibration {
     prom_renderer *renderer;
@@ -65,8 +72,7 @@ static double count_pixels(const calibration *c, const scene_plan *plan)
     return (double)samples;
 }
 
-static void take_sample(const calibration *c, const scene_plan *plan,
-                        prom_cost_samples *samples)
+static prom_cost_sample take_sample(const calibration *c, const scene_plan *plan)
 {
     prom_cost_sample sample = {.features.fixed = 1};
     double pixels = count_pixels(c, plan);
@@ -80,27 +86,34 @@ static void take_sample(const calibration *c, const scene_plan *plan,
         sample.features.pixels[plan->shading] = pixels;
     }
     sample.ms = time_frame(c, plan);
-    prom_array_push(samples, sample);
+    return sample;
 }
 
-static void take_all(const calibration *c, int effort, prom_cost_samples *samples)
+// All samples in a fixed order: some empty frames, then the shadings in turn.
+static void take_all(const calibration *c, int effort, prom_cost_sample *samples,
+                     prom_progress *progress)
 {
-    static const int per_shading[] = {12, 24, 40}; // 63, 126 and 209 samples in all
     scene_random random = {SEED};
-    prom_progress progress;
-    int rounds = per_shading[effort - 1];
-    prom_progress_begin(&progress, "calibrating",
-                        (uint64_t)(rounds * PROM_SHADE_COUNT + FIXED_SAMPLES * effort));
-    for (int i = 0; i < FIXED_SAMPLES * effort; i++) {
-        take_sample(c, NULL, samples);
-        prom_progress_step(&progress, 1);
+    for (size_t i = 0; i < sample_count(effort); i++) {
+        scene_plan plan;
+        bool empty = i < FIXED_SAMPLES;
+        if (!empty)
+            plan = scene_plan_random(&random, (prom_shading)(i % PROM_SHADE_COUNT), &c->kit);
+        prom_cost_sample sample = take_sample(c, empty ? NULL : &plan);
+        if (!samples[i].features.fixed || sample.ms < samples[i].ms) samples[i] = sample;
+        prom_progress_step(progress, 1);
     }
-    for (int i = 0; i < rounds; i++)
-        for (int shading = 0; shading < PROM_SHADE_COUNT; shading++) {
-            scene_plan plan = scene_plan_random(&random, (prom_shading)shading, &c->kit);
-            take_sample(c, &plan, samples);
-            prom_progress_step(&progress, 1);
-        }
+}
+
+// Whatever else the machine does comes in bursts longer than a sample: the whole set is taken
+// more than once, and of each sample the quickest time counts.
+static void take_passes(const calibration *c, int effort, prom_cost_samples *samples)
+{
+    prom_progress progress;
+    size_t count = sample_count(effort);
+    prom_progress_begin(&progress, "calibrating", count * PASSES);
+    prom_cost_sample *first = prom_array_extend(samples, count);
+    for (int pass = 0; pass < PASSES; pass++) take_all(c, effort, first, &progress);
     prom_progress_end(&progress);
 }
 
@@ -134,7 +147,7 @@ prom_status prom_calibrate_run(prom_renderer *renderer, prom_timer *timer, uint3
 
     prom_status status = PROM_OK;
     if (scene_kit_upload(&c.kit, renderer))
-        take_all(&c, effort, samples);
+        take_passes(&c, effort, samples);
     else
         status = renderer_out_of_memory(error);
 

@@ -2,7 +2,10 @@
 
 #include <math.h>
 
-#define PICTURE 64u // side of the impostors' pictures and of the material's texture, texels
+// Sides of the textures, in texels: large enough that they are shrunk on nearly all items, as
+// textures in scenes are; where they are enlarged, a software device reads half as many texels.
+#define MATERIAL_SIZE 1024u
+#define PICTURE_SIZE 256u
 #define MAX_TRIANGLES 400000u
 #define MAX_ITEMS 2000.0
 
@@ -90,19 +93,20 @@ static void paint(prom_texture *texture)
             for (uint32_t x = 0; x < texture->width; x++) {
                 uint8_t *p = texture->pixels + prom_texture_offset(texture, 0, layer) +
                              4 * ((size_t)y * texture->width + x);
-                float dx = (float)x / (PICTURE / 2) - 1, dy = (float)y / (PICTURE / 2) - 1;
-                p[0] = (uint8_t)(96 + x * 2);
-                p[1] = (uint8_t)(96 + y * 2);
+                float dx = 2 * (float)x / (float)texture->width - 1;
+                float dy = 2 * (float)y / (float)texture->height - 1;
+                p[0] = (uint8_t)(128 + 100 * dx);
+                p[1] = (uint8_t)(128 + 100 * dy);
                 p[2] = (uint8_t)(128 + ((x ^ y) & 31));
                 p[3] = dx * dx + dy * dy < 0.85f ? 255 : 0;
             }
     prom_texture_make_mips(texture, 0.5f);
 }
 
-static uint32_t upload_texture(prom_renderer *r, prom_texture_kind kind)
+static uint32_t upload_texture(prom_renderer *r, prom_texture_kind kind, uint32_t size)
 {
     prom_texture texture;
-    prom_texture_init(&texture, kind, PICTURE, PICTURE);
+    prom_texture_init(&texture, kind, size, size);
     paint(&texture);
     uint32_t id = prom_renderer_add_texture(r, &texture);
     prom_texture_finish(&texture);
@@ -111,9 +115,9 @@ static uint32_t upload_texture(prom_renderer *r, prom_texture_kind kind)
 
 bool scene_kit_upload(scene_kit *kit, prom_renderer *renderer)
 {
-    uint32_t texture = upload_texture(renderer, PROM_TEXTURE_COLOR);
-    kit->pictures_unlit = upload_texture(renderer, PROM_TEXTURE_IMPOSTOR_LIT);
-    kit->pictures_lit = upload_texture(renderer, PROM_TEXTURE_IMPOSTOR_ALBEDO);
+    uint32_t texture = upload_texture(renderer, PROM_TEXTURE_COLOR, MATERIAL_SIZE);
+    kit->pictures_unlit = upload_texture(renderer, PROM_TEXTURE_IMPOSTOR_LIT, PICTURE_SIZE);
+    kit->pictures_lit = upload_texture(renderer, PROM_TEXTURE_IMPOSTOR_ALBEDO, PICTURE_SIZE);
     // One per shading, at its number.
     const prom_material materials[PROM_SHADE_COUNT] = {
         [PROM_SHADE_PLAIN] = {.base_color = {1, 1, 1, 1}, .texture = PROM_NONE},
