@@ -5,38 +5,27 @@
 
 #include <stdlib.h>
 
-// A chunk's edge as a share of the layout's diagonal where the user gives none, how often it
-// may double where triangles are few and halve where they are many (choices).
+// A chunk's edge as a share of the layout's diagonal where the user gives none; where triangles
+// are fewer than a multiple of the least of an object it may be this much longer; where they
+// are too many it is halved at most so often (choices).
 #define CHUNK_SHARE (1.0 / 24)
-enum { MOST_DOUBLINGS = 2, MOST_HALVINGS = 8, ROOMY_FACTOR = 4 };
+enum { LONGER = 4, ROOMY_FACTOR = 4, MOST_HALVINGS = 8 };
 
 typedef struct spot {
     prom_face face;
     double at[3]; // centroid
-    int64_t cell[3];
-    uint32_t order;
+    uint32_t order, octant;
 } spot;
 
-static spot *find_spots(const prom_finder *finder, const prom_face *faces, size_t count,
-                        double edge)
+static spot *find_spots(const prom_finder *finder, const prom_face *faces, size_t count)
 {
     spot *spots = prom_alloc(count, sizeof *spots);
     for (size_t i = 0; i < count; i++) {
         spots[i].face = faces[i];
         spots[i].order = (uint32_t)i;
         prom_face_centroid(finder, faces[i], spots[i].at);
-        for (int k = 0; k < 3; k++)
-            spots[i].cell[k] = edge > 0 ? (int64_t)floor(spots[i].at[k] / edge) : 0;
     }
     return spots;
-}
-
-static int by_cell(const void *pa, const void *pb)
-{
-    const spot *a = pa, *b = pb;
-    for (int k = 0; k < 3; k++)
-        if (a->cell[k] != b->cell[k]) return a->cell[k] < b->cell[k] ? -1 : 1;
-    return a->order < b->order ? -1 : a->order > b->order;
 }
 
 static void add_span(const prom_finder *finder, prom_face *faces, size_t count,
@@ -69,42 +58,39 @@ static void sort_octants(chunker *c, spot *spots, size_t count, const double mid
     memset(start, 0, 9 * sizeof *start);
     for (size_t i = 0; i < count; i++) {
         const double *p = spots[i].at;
-        int o = (p[0] >= middle[0]) + 2 * (p[1] >= middle[1]) + 4 * (p[2] >= middle[2]);
-        spots[i].cell[0] = o;
+        unsigned o = (p[0] >= middle[0]) + 2u * (p[1] >= middle[1]) + 4u * (p[2] >= middle[2]);
+        spots[i].octant = o;
         start[o + 1]++;
     }
     for (int o = 0; o < 8; o++) start[o + 1] += start[o];
     size_t at[8];
     memcpy(at, start, sizeof at);
-    for (size_t i = 0; i < count; i++) c->temp[at[spots[i].cell[0]]++] = spots[i];
+    for (size_t i = 0; i < count; i++) c->temp[at[spots[i].octant]++] = spots[i];
     memcpy(spots, c->temp, count * sizeof *spots);
 }
 
 static void chunk_cell(chunker *c, spot *spots, size_t count, const double corner[3],
                        double edge);
 
-// Octants of few triangles are put together, which keeps chunks from becoming specks.
+// Small octants of few triangles are put together, which keeps chunks from becoming specks.
 static void chunk_octants(chunker *c, spot *spots, size_t count, const double corner[3],
                           double edge)
 {
     double half = edge / 2, middle[3];
     for (int k = 0; k < 3; k++) middle[k] = corner[k] + half;
-    size_t start[9];
+    size_t start[9], rest = 0;
     sort_octants(c, spots, count, middle, start);
-    size_t rest = 0;
     spot *left = prom_alloc(count, sizeof *left);
     for (int o = 0; o < 8; o++) {
         size_t n = start[o + 1] - start[o];
-        if (n >= c->few) continue;
-        memcpy(left + rest, spots + start[o], n * sizeof *left);
-        rest += n;
-    }
-    for (int o = 0; o < 8; o++) {
-        size_t n = start[o + 1] - start[o];
-        if (n < c->few) continue;
         double low[3] = {corner[0] + (o & 1 ? half : 0), corner[1] + (o & 2 ? half : 0),
                          corner[2] + (o & 4 ? half : 0)};
-        chunk_cell(c, spots + start[o], n, low, half);
+        if (n < c->few && half <= LONGER * c->base) {
+            memcpy(left + rest, spots + start[o], n * sizeof *left);
+            rest += n;
+        } else if (n) {
+            chunk_cell(c, spots + start[o], n, low, half);
+        }
     }
     if (rest) emit(c, left, rest);
     prom_free(left);
@@ -113,9 +99,10 @@ static void chunk_octants(chunker *c, spot *spots, size_t count, const double co
 static void chunk_cell(chunker *c, spot *spots, size_t count, const double corner[3],
                        double edge)
 {
-    bool large = edge > c->base && count > ROOMY_FACTOR * c->few;
+    bool far_too_long = edge > LONGER * c->base && count >= c->few;
+    bool too_long = edge > c->base && (count > ROOMY_FACTOR * c->few || c->few == 0);
     bool crowded = count > c->many && edge > ldexp(c->base, -MOST_HALVINGS);
-    if (large || crowded)
+    if (far_too_long || too_long || crowded)
         chunk_octants(c, spots, count, corner, edge);
     else
         emit(c, spots, count);
@@ -125,29 +112,24 @@ void prom_cut_chunks(const prom_finder *finder, prom_face *faces, size_t count,
                      prom_spans *chunks)
 {
     if (!count) return;
-    prom_wbox bounds = prom_faces_bounds(finder, faces, count);
+    spot *spots = find_spots(finder, faces, count);
+    prom_wbox box = PROM_WBOX_EMPTY;
+    for (size_t i = 0; i < count; i++) prom_wbox_add_point(&box, spots[i].at);
+    double longest = 0, corner[3], edge;
+    for (int k = 0; k < 3; k++) longest = fmax(longest, box.max[k] - box.min[k]);
     bool chosen = finder->options.chunk_size > 0;
     double base = chosen ? finder->options.chunk_size : CHUNK_SHARE * finder->layout_diagonal;
-    // Cells must stay countable, whatever the user asks for.
-    base = fmax(base, prom_wbox_diagonal(&bounds) * 1e-5);
-    double edge = chosen ? base : ldexp(base, MOST_DOUBLINGS);
-    spot *spots = find_spots(finder, faces, count, edge);
-    qsort(spots, count, sizeof *spots, by_cell);
+    base = fmax(base, longest * 1e-6); // so that doubles can tell cells apart
+    for (int k = 0; k < 3; k++) corner[k] = floor(box.min[k] / base) * base;
+    for (edge = base; edge < longest + base;) edge *= 2;
     chunker c = {.finder = finder,
                  .temp = prom_alloc(count, sizeof *c.temp),
                  .faces = faces,
                  .chunks = chunks,
                  .base = base,
-                 .few = finder->options.min_triangles,
+                 .few = chosen ? 0 : finder->options.min_triangles, // all cells alike
                  .many = finder->options.max_triangles};
-    for (size_t i = 0, end; i < count; i = end) {
-        for (end = i + 1;
-             end < count && !memcmp(spots[end].cell, spots[i].cell, sizeof spots[i].cell);)
-            end++;
-        double corner[3];
-        for (int k = 0; k < 3; k++) corner[k] = (double)spots[i].cell[k] * edge;
-        chunk_cell(&c, spots + i, end - i, corner, edge);
-    }
+    chunk_cell(&c, spots, count, corner, edge);
     prom_free(c.temp);
     prom_free(spots);
 }
@@ -190,7 +172,7 @@ void prom_cut_halves(const prom_finder *finder, prom_face *faces, size_t count,
                      prom_spans *pieces)
 {
     if (!count) return;
-    spot *spots = find_spots(finder, faces, count, 0);
+    spot *spots = find_spots(finder, faces, count);
     halve(finder, spots, count, &faces, pieces);
     prom_free(spots);
 }

@@ -86,10 +86,9 @@ static void make_backdrop(prom_finder *finder, const prom_part *part)
 static bool breaks_up(const prom_finder *finder, const prom_part *part)
 {
     uint32_t most = finder->options.max_triangles;
-    if (part->item_count == 1) {
-        const prom_item *only = &finder->items.data[part->first_item];
-        return only->surface || part->triangles / PROM_ALONE_FACTOR > most;
-    }
+    bool heavy = part->triangles / PROM_ALONE_FACTOR > most;
+    if (finder->one_thing) return heavy;
+    if (part->item_count == 1) return heavy || finder->items.data[part->first_item].surface;
     if (part->triangles > most) return true;
     double widest = 0, diagonal = prom_wbox_diagonal(&part->bounds);
     for (uint32_t i = 0; i < part->item_count; i++) {
@@ -109,18 +108,24 @@ static void merge_items(prom_finder *finder, prom_part *part)
     part->item_count = 1;
 }
 
-// The only part of the whole scene is an object as long as levels of detail can serve it;
-// beyond that it is treated like a surface.
-static void put_alone(pool *p, prom_part *part)
+// The only part of the whole scene, when it is mostly one connected piece and levels of detail
+// alone cannot serve it, is treated like a surface.
+static bool is_heavy_alone(const prom_finder *finder, const prom_part *part)
 {
-    prom_finder *finder = p->finder;
-    if (part->triangles / PROM_ALONE_FACTOR <= finder->options.max_triangles) {
-        prom_make_part(finder, part, false);
-        return;
+    if (finder->parts.count > 1 || !breaks_up(finder, part)) return false;
+    uint32_t most = 0;
+    for (uint32_t i = 0; i < part->item_count; i++) {
+        uint32_t triangles = finder->items.data[part->first_item + i].face_count;
+        most = triangles > most ? triangles : most;
     }
-    finder->split++;
+    return most > part->triangles / 2;
+}
+
+static void put_heavy_alone(pool *p, const prom_part *part)
+{
+    p->finder->split++;
     for (uint32_t i = 0; i < part->item_count; i++)
-        put_surface(p, &finder->items.data[part->first_item + i]);
+        put_surface(p, &p->finder->items.data[part->first_item + i]);
 }
 
 static void put_part(pool *p, prom_part *part)
@@ -128,9 +133,9 @@ static void put_part(pool *p, prom_part *part)
     prom_finder *finder = p->finder;
     bool single = part->item_count == 1;
     if (!part->unique) {
-        prom_make_part(finder, part, prom_is_backdrop(finder, &part->bounds));
-    } else if (finder->parts.count == 1) {
-        put_alone(p, part);
+        prom_make_part(finder, part, prom_is_backdrop(finder, &part->bounds, part->triangles));
+    } else if (is_heavy_alone(finder, part)) {
+        put_heavy_alone(p, part);
     } else if (single && finder->items.data[part->first_item].backdrop) {
         prom_make_part(finder, part, true);
     } else if (!breaks_up(finder, part)) {

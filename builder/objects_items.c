@@ -83,6 +83,7 @@ static void place_vertices(prom_use *use, const prom_mesh *mesh, const double w[
         const float *p = mesh->vertices[v].position;
         for (int r = 0; r < 3; r++)
             use->world[v][r] = w[r] * p[0] + w[4 + r] * p[1] + w[8 + r] * p[2] + w[12 + r];
+        prom_wbox_add_point(&use->bounds, use->world[v]);
     }
 }
 
@@ -131,7 +132,7 @@ static void split_part(prom_finder *finder, uint32_t part)
     p->first_item = (uint32_t)finder->items.count;
     for (uint32_t i = 0; i < p->mesh_count; i++) {
         uint32_t mesh = finder->part_meshes.data[p->first_mesh + i];
-        prom_use use = {.node = p->node, .mesh = mesh};
+        prom_use use = {.node = p->node, .mesh = mesh, .bounds = PROM_WBOX_EMPTY};
         const double *world = finder->source->nodes.data[p->node].world;
         set_normal_matrix(&use, world);
         place_vertices(&use, &finder->source->meshes.data[mesh], world);

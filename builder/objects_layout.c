@@ -1,9 +1,9 @@
 // The layout: where the scene proper is and how large, so that "far larger than the rest" has a
-// measure. It must not be drawn out by a sky, nor drawn in by a bush of ten thousand leaves
-// that are pieces of their own. So it is taken from the centres of objects and pieces, each
-// weighted with its diagonal (a part's pieces together with no more than a few times the
-// part's), between two percentiles; what is far larger than the result leaves, and it is taken
-// again.
+// measure. A sky must not draw it out, nor may a bush of ten thousand leaves, each a piece of
+// its own, draw it in. So it is taken from the centres of objects and pieces between two
+// percentiles, each weighted with its diagonal (up to a few times the median, and a part's
+// pieces together up to a few times the part's), and widened by half of a common diagonal; then
+// what is far larger leaves, and it is taken again.
 #include "builder/objects_private.h"
 #include "metaobj/base/alloc.h"
 
@@ -13,24 +13,25 @@
 #define BACKDROP_FACTOR 3.0
 #define SURFACE_SHARE (1.0 / 8) // of the layout's diagonal
 #define SURFACE_FACTOR 4.0      // times the median object
-#define TAIL 0.05               // weight left out at either end of an axis
+#define TAIL 0.1                // weight left out at either end of an axis
 #define PIECES_WEIGHT 4.0
-enum { MOST_ROUNDS = 16, LEAST_UNITS = 8 };
+#define MEDIAN_WEIGHT 4.0
+enum { MOST_ROUNDS = 16, LEAST_UNITS = 8, HEAVY_FACTOR = 4 };
 #define MOST_UNITS 1000000.0
 
 typedef struct unit {
     double center[3];
-    double diagonal, weight;
+    double diagonal;
+    double votes; // how many objects it stands for
 } unit;
 
 typedef PROM_ARRAY(unit) units;
 
-static void add_unit(units *list, const prom_wbox *bounds, double scale, const double by[3])
+static void add_unit(units *list, const prom_wbox *bounds, double votes, const double by[3])
 {
-    unit u = {.diagonal = prom_wbox_diagonal(bounds)};
+    unit u = {.diagonal = prom_wbox_diagonal(bounds), .votes = votes};
     prom_wbox_center(bounds, u.center);
     for (int k = 0; k < 3; k++) u.center[k] += by[k];
-    u.weight = u.diagonal * scale;
     prom_array_push(list, u);
 }
 
@@ -45,9 +46,9 @@ static void add_part(const prom_finder *finder, units *list, const prom_part *pa
     for (uint32_t i = 0; i < part->item_count; i++)
         sum += prom_wbox_diagonal(&finder->items.data[part->first_item + i].bounds);
     double cap = PIECES_WEIGHT * prom_wbox_diagonal(&part->bounds);
-    double scale = (double)stride * (sum > cap ? cap / sum : 1);
+    double votes = (double)stride * (sum > cap ? cap / sum : 1);
     for (size_t i = 0; i < part->item_count; i += stride)
-        add_unit(list, &finder->items.data[part->first_item + i].bounds, scale, by);
+        add_unit(list, &finder->items.data[part->first_item + i].bounds, votes, by);
 }
 
 static void add_scope(const prom_finder *finder, units *list, const prom_scope *scope)
@@ -69,43 +70,75 @@ static void add_scope(const prom_finder *finder, units *list, const prom_scope *
     }
 }
 
-typedef struct axis_key {
+typedef struct sort_key {
     double at;
     uint32_t unit;
-} axis_key;
+} sort_key;
 
 static int by_place(const void *pa, const void *pb)
 {
-    const axis_key *a = pa, *b = pb;
+    const sort_key *a = pa, *b = pb;
     if (a->at != b->at) return a->at < b->at ? -1 : 1;
     return a->unit < b->unit ? -1 : a->unit > b->unit;
 }
 
-// Where the weight of the units up to `limit` passes the share `at`.
-static double weighted_percentile(const units *list, const axis_key *keys, double limit,
-                                  double total, double at)
+// Units sorted along an axis, or by diagonal (axis 3).
+static sort_key *sort_units(const units *list, int axis)
 {
-    double sum = 0, last = keys[0].at;
-    for (size_t i = 0; i < list->count; i++) {
-        const unit *u = &list->data[keys[i].unit];
-        if (u->diagonal > limit) continue;
-        last = keys[i].at;
-        sum += u->weight;
+    sort_key *keys = prom_alloc(list->count, sizeof *keys);
+    for (uint32_t i = 0; i < list->count; i++) {
+        const unit *u = &list->data[i];
+        keys[i] = (sort_key){axis < 3 ? u->center[axis] : u->diagonal, i};
+    }
+    qsort(keys, list->count, sizeof *keys, by_place);
+    return keys;
+}
+
+typedef struct measure {
+    const units *list;
+    sort_key *keys[4];
+    double limit; // diagonals above it do not count
+    double most;  // diagonals above it count as this
+} measure;
+
+static double weight(const measure *m, const unit *u)
+{
+    return u->diagonal > m->limit ? 0 : u->votes * fmin(u->diagonal, m->most);
+}
+
+// Where the weight of the units along an axis passes the share `at`.
+static double percentile(const measure *m, int axis, double at)
+{
+    double total = 0, sum = 0, last = m->keys[axis][0].at;
+    for (size_t i = 0; i < m->list->count; i++) total += weight(m, &m->list->data[i]);
+    for (size_t i = 0; i < m->list->count; i++) {
+        double w = weight(m, &m->list->data[m->keys[axis][i].unit]);
+        if (!(w > 0)) continue;
+        last = m->keys[axis][i].at;
+        sum += w;
         if (sum >= at * total) break;
     }
     return last;
 }
 
-static prom_wbox core_box(const units *list, axis_key *const keys[3], double limit,
-                          double margin)
+static double median_by_votes(const measure *m)
 {
-    double total = 0;
-    for (size_t i = 0; i < list->count; i++)
-        if (list->data[i].diagonal <= limit) total += list->data[i].weight;
+    double total = 0, sum = 0;
+    for (size_t i = 0; i < m->list->count; i++) total += m->list->data[i].votes;
+    size_t i = 0;
+    for (; i + 1 < m->list->count; i++) {
+        sum += m->list->data[m->keys[3][i].unit].votes;
+        if (sum >= total / 2) break;
+    }
+    return m->keys[3][i].at;
+}
+
+static prom_wbox core_box(const measure *m)
+{
+    double margin = percentile(m, 3, 0.5) / 2;
     prom_wbox box;
     for (int k = 0; k < 3; k++) {
-        double low = weighted_percentile(list, keys[k], limit, total, TAIL);
-        double high = weighted_percentile(list, keys[k], limit, total, 1 - TAIL);
+        double low = percentile(m, k, TAIL), high = percentile(m, k, 1 - TAIL);
         double tail = (high - low) * TAIL / (1 - 2 * TAIL) + margin;
         box.min[k] = low - tail;
         box.max[k] = high + tail;
@@ -119,13 +152,16 @@ static int by_value(const void *pa, const void *pb)
     return a < b ? -1 : a > b;
 }
 
-static double median_diagonal(const units *list)
+// Of a scene of few large parts, specks beside them must not be all.
+static double median_part(const prom_finder *finder)
 {
-    double *sorted = prom_alloc(list->count, sizeof *sorted);
-    for (size_t i = 0; i < list->count; i++) sorted[i] = list->data[i].diagonal;
-    qsort(sorted, list->count, sizeof *sorted, by_value);
-    double median = sorted[list->count / 2];
-    prom_free(sorted);
+    size_t n = finder->parts.count;
+    double *diagonals = prom_alloc(n, sizeof *diagonals);
+    for (size_t i = 0; i < n; i++)
+        diagonals[i] = prom_wbox_diagonal(&finder->parts.data[i].bounds);
+    qsort(diagonals, n, sizeof *diagonals, by_value);
+    double median = diagonals[(n - 1) / 2];
+    prom_free(diagonals);
     return median;
 }
 
@@ -136,34 +172,69 @@ static size_t count_within(const units *list, double limit)
     return count;
 }
 
-static void measure(prom_finder *finder, const units *list)
+static void find_core(prom_finder *finder, const units *list)
 {
-    axis_key *keys[3];
-    for (int k = 0; k < 3; k++) {
-        keys[k] = prom_alloc(list->count, sizeof *keys[k]);
-        for (uint32_t i = 0; i < list->count; i++)
-            keys[k][i] = (axis_key){list->data[i].center[k], i};
-        qsort(keys[k], list->count, sizeof *keys[k], by_place);
-    }
-    finder->median_diagonal = median_diagonal(list);
-    double margin = finder->median_diagonal / 2, limit = INFINITY;
+    measure m = {.list = list, .limit = INFINITY};
+    for (int k = 0; k < 4; k++) m.keys[k] = sort_units(list, k);
+    finder->median_diagonal = median_by_votes(&m);
+    m.most = MEDIAN_WEIGHT * finder->median_diagonal;
     size_t within = list->count;
-    finder->layout = core_box(list, keys, limit, margin);
+    finder->layout = core_box(&m);
     for (int round = 0; round < MOST_ROUNDS; round++) {
-        limit = BACKDROP_FACTOR * prom_wbox_diagonal(&finder->layout);
+        double limit = BACKDROP_FACTOR * prom_wbox_diagonal(&finder->layout);
         size_t now = count_within(list, limit);
         if (now < LEAST_UNITS || now == within) break;
+        m.limit = limit;
         within = now;
-        finder->layout = core_box(list, keys, limit, margin);
+        finder->layout = core_box(&m);
     }
-    finder->layout_diagonal = prom_wbox_diagonal(&finder->layout);
-    for (int k = 0; k < 3; k++) prom_free(keys[k]);
+    finder->layout_diagonal = fmax(prom_wbox_diagonal(&finder->layout), median_part(finder));
+    for (int k = 0; k < 4; k++) prom_free(m.keys[k]);
 }
 
-bool prom_is_backdrop(const prom_finder *finder, const prom_wbox *bounds)
+// A backdrop is always drawn in full, which heavy geometry cannot be.
+bool prom_is_backdrop(const prom_finder *finder, const prom_wbox *bounds, uint32_t triangles)
 {
     return finder->backdrops_possible &&
+           triangles / HEAVY_FACTOR <= finder->options.max_triangles &&
            prom_wbox_diagonal(bounds) > BACKDROP_FACTOR * finder->layout_diagonal;
+}
+
+// A ring of hills or a painted skyline may come in pieces, or stand on one side: large things
+// beside the layout, of a mesh that reaches as far from it as a backdrop does.
+static bool is_skyline(const prom_finder *finder, const prom_item *item)
+{
+    const prom_use *use = &finder->uses.data[finder->faces.data[item->first_face].use];
+    double center[3];
+    prom_wbox_center(&item->bounds, center);
+    bool inside = true;
+    for (int k = 0; k < 3; k += 2)
+        inside &= center[k] >= finder->layout.min[k] && center[k] <= finder->layout.max[k];
+    prom_wbox reach = finder->layout;
+    prom_wbox_add(&reach, &use->bounds);
+    return !inside && prom_is_backdrop(finder, &reach, item->face_count);
+}
+
+static void mark_items(prom_finder *finder)
+{
+    double surface =
+        fmax(SURFACE_SHARE * finder->layout_diagonal, SURFACE_FACTOR * finder->median_diagonal);
+    for (size_t i = 0; i < finder->items.count; i++) {
+        prom_item *item = &finder->items.data[i];
+        bool large = prom_wbox_diagonal(&item->bounds) > surface;
+        item->backdrop = prom_is_backdrop(finder, &item->bounds, item->face_count) ||
+                         (large && is_skyline(finder, item));
+        item->surface = large && !item->backdrop && !finder->one_thing;
+    }
+}
+
+static bool is_one_thing(const prom_finder *finder)
+{
+    uint64_t triangles = 0;
+    for (size_t i = 0; i < finder->parts.count; i++)
+        triangles += finder->parts.data[i].triangles;
+    return finder->scopes.count == 1 && finder->parts.count <= PROM_FEW_PARTS &&
+           triangles / PROM_ALONE_FACTOR <= finder->options.max_triangles;
 }
 
 void prom_find_layout(prom_finder *finder)
@@ -171,16 +242,10 @@ void prom_find_layout(prom_finder *finder)
     units list = {0};
     for (size_t i = 0; i < finder->scopes.count; i++)
         add_scope(finder, &list, &finder->scopes.data[i]);
-    measure(finder, &list);
+    find_core(finder, &list);
     double limit = BACKDROP_FACTOR * finder->layout_diagonal;
-    finder->backdrops_possible =
-        finder->parts.count > 1 && count_within(&list, limit) >= LEAST_UNITS;
+    finder->backdrops_possible = count_within(&list, limit) >= LEAST_UNITS;
     prom_array_finish(&list);
-    double surface =
-        fmax(SURFACE_SHARE * finder->layout_diagonal, SURFACE_FACTOR * finder->median_diagonal);
-    for (size_t i = 0; i < finder->items.count; i++) {
-        prom_item *item = &finder->items.data[i];
-        item->backdrop = prom_is_backdrop(finder, &item->bounds);
-        item->surface = !item->backdrop && prom_wbox_diagonal(&item->bounds) > surface;
-    }
+    finder->one_thing = is_one_thing(finder);
+    mark_items(finder);
 }

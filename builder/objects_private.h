@@ -17,9 +17,11 @@
 
 #include <stdint.h>
 
-// An object alone in its scene, or whole and connected, may have this many times the triangles
-// of any other before it is cut: its levels of detail serve it better than a cut does.
-enum { PROM_ALONE_FACTOR = 16 };
+// An object that is connected, or is the whole scene, may have this many times the triangles of
+// any other before it is cut: its levels of detail serve it better than a cut does. A scene of
+// so few triangles in few parts is taken to be one thing, a chair rather than a street: its
+// parts stay whole.
+enum { PROM_ALONE_FACTOR = 16, PROM_FEW_PARTS = 64 };
 
 typedef struct prom_part {
     uint32_t node, scope;
@@ -38,7 +40,8 @@ typedef struct prom_part {
 typedef struct prom_use {
     uint32_t node, mesh;
     double (*world)[3]; // positions
-    float normal[9];    // takes normals to the world, column-major
+    prom_wbox bounds;
+    float normal[9]; // takes normals to the world, column-major
     bool mirrored;
     uint32_t *copy,
         *stamp; // a vertex's index in the shape being made, and which shape that was
@@ -73,10 +76,11 @@ typedef struct prom_finder {
     PROM_ARRAY(prom_use) uses;
     PROM_ARRAY(prom_face) faces;
     PROM_ARRAY(prom_item) items;
-    prom_wbox layout; // of the better part of the objects
-    double layout_diagonal;
+    prom_wbox layout;        // of the better part of the objects
+    double layout_diagonal;  // or of the median part, where that is longer
     double median_diagonal;  // of the objects
     bool backdrops_possible; // there is enough beside them to tell
+    bool one_thing;          // see PROM_FEW_PARTS
     uint32_t kind_count;
     uint32_t *kind_shape;  // 2 per kind: ordinary, backdrop; PROM_NONE until made
     uint32_t *node_name;   // offset into names, 0 until made
@@ -99,7 +103,7 @@ void prom_find_items(prom_finder *finder);
 // ---- layout
 // Fills layout and its diagonal and the median, and marks backdrop and surface items.
 void prom_find_layout(prom_finder *finder);
-bool prom_is_backdrop(const prom_finder *finder, const prom_wbox *bounds);
+bool prom_is_backdrop(const prom_finder *finder, const prom_wbox *bounds, uint32_t triangles);
 
 // ---- fates
 // Adds the objects of a scope: of its only or first member.
