@@ -39,7 +39,7 @@ struct prom_measure {
 
 static uint32_t size_px(uint32_t s)
 {
-    return (uint32_t)prom_size_of_bin(s);
+    return PROM_VIEW_PX >> (PROM_SIZES - 1 - s);
 }
 
 static size_t window_pixels(uint32_t s)
@@ -162,13 +162,16 @@ static void compare_size(prom_measure *m, size_t dir, uint32_t size, const level
         m->features + dir * m->features_of_size[PROM_SIZES] + m->features_of_size[size];
     const float *covered =
         m->coverage + dir * m->coverage_of_size[PROM_SIZES] + m->coverage_of_size[size];
+    const size_t window = window_pixels(size);
     double area = 0, error = 0;
     for (size_t i = 0; i < (size_t)side * side; i++) area += fmaxf(covered[i], in->coverage[i]);
-    for (int b = 0; b < BACKGROUNDS; b++, truth += 2 * window_pixels(size)) {
+    for (int b = 0; b < BACKGROUNDS; b++, truth += 2 * window) {
         composite(m, in, side, m->background[b], s->grey);
         prom_edge_blur_features(s->grey, wide, wide, s->features, s->metric);
         prom_edge_blur_error(truth, s->features, wide, wide, s->error);
-        for (size_t i = 0; i < window_pixels(size); i++) error += s->error[i];
+        float sum = 0; // of one window: small enough for a float
+        for (size_t i = 0; i < window; i++) sum += s->error[i];
+        error += sum;
     }
     // Less than a pixel covered: its error is judged as if it were one.
     double accuracy = 1.0 - error / BACKGROUNDS / (area > 1.0 ? area : 1.0);

@@ -43,16 +43,8 @@ static void bound_inner(prom_model *m, uint32_t node)
         m->half[node][a] = round_up((high - low) / 2);
         diagonal += (double)m->half[node][a] * m->half[node][a];
     }
-    double reach = 0;
-    for (uint32_t c = first; c < end; c++) {
-        double square = 0;
-        for (int a = 0; a < 3; a++) {
-            double d = m->center[c][a] - m->center[node][a];
-            square += d * d;
-        }
-        reach = fmax(reach, sqrt(square) + m->radius[c]);
-    }
-    m->radius[node] = round_up(fmin(sqrt(diagonal), reach));
+    // Not the tightest sphere: impostors fill the box, and it is what their views hold.
+    m->radius[node] = round_up(sqrt(diagonal));
 }
 
 void prom_model_update_bounds(prom_model *model)
