@@ -5,6 +5,8 @@
 
 #include "metaobj/base/log.h"
 
+#include <string.h>
+
 #define DEFAULT_BUDGET_MS 33.0
 #define AUTO_FRAMES 300
 
@@ -97,9 +99,16 @@ static const struct argp argp = {
     .children = children,
 };
 
+static bool heeds_budget(const char *selector)
+{
+    for (size_t i = 0; i < prom_selector_count(); i++)
+        if (!strcmp(prom_selector_at(i)->name, selector)) return prom_selector_at(i)->budgeted;
+    return false;
+}
+
 static void warn_infeasible(const bench_options *o, const prom_loop_result *result)
 {
-    if (!result->infeasible_frames) return;
+    if (!result->infeasible_frames || !heeds_budget(o->loop.selector)) return;
     prom_log(PROM_LOG_WARNING,
              "budget %g ms: in %u of %zu frames even the cheapest cut is predicted to take "
              "longer; %.1f ms would do",

@@ -215,7 +215,6 @@ static void print_report(const build_options *o, const prom_build_report *r, dou
     printf("file             %12.1f MiB (%.0f bytes a triangle)\n",
            (double)r->file_bytes / (1 << 20), (double)r->file_bytes / triangles);
     printf("peak memory      %12.1f MiB\n", (double)r->peak_bytes / (1 << 20));
-    printf("content          %016" PRIx64 "\n", r->content_hash);
 }
 
 prom_status prom_command_build(int argc, char **argv, prom_error *error)

@@ -106,7 +106,9 @@ prom_status prom_output_write_json(const char *path, json_t *json, prom_error *e
     char *text = dump(json);
     if (!text)
         return prom_fail(error, PROM_ERR_OUTPUT, "%s: the report is not valid UTF-8", path);
-    prom_status status = prom_output_write(path, text, strlen(text), error);
+    char *line = prom_format("%s\n", text);
+    prom_status status = prom_output_write(path, line, strlen(line), error);
+    prom_free(line);
     free(text);
     return status;
 }
