@@ -7,7 +7,6 @@
 
 #include <stdlib.h>
 
-#define SEED 0x9e3779b97f4a7c15u
 #define SAMPLE_MS 5.0 // each sample is drawn for at least this long
 #define MIN_REPEATS 3
 #define MAX_REPEATS 64
@@ -93,12 +92,12 @@ static prom_cost_sample take_sample(const calibration *c, const scene_plan *plan
 static void take_all(const calibration *c, int effort, prom_cost_sample *samples,
                      prom_progress *progress)
 {
-    scene_random random = {SEED};
     for (size_t i = 0; i < sample_count(effort); i++) {
         scene_plan plan;
         bool empty = i < FIXED_SAMPLES;
         if (!empty)
-            plan = scene_plan_random(&random, (prom_shading)(i % PROM_SHADE_COUNT), &c->kit);
+            plan = scene_plan_at(&c->kit, (prom_shading)(i % PROM_SHADE_COUNT),
+                                 (uint32_t)(i / PROM_SHADE_COUNT));
         prom_cost_sample sample = take_sample(c, empty ? NULL : &plan);
         if (!samples[i].features.fixed || sample.ms < samples[i].ms) samples[i] = sample;
         prom_progress_step(progress, 1);

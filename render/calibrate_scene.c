@@ -14,21 +14,6 @@ static const struct {
     uint32_t stacks, slices;
 } details[SCENE_DETAILS] = {{3, 3}, {5, 6}, {11, 10}, {26, 20}, {51, 50}};
 
-uint32_t scene_random_next(scene_random *random)
-{
-    uint64_t old = random->state;
-    random->state = old * 6364136223846793005u + 1442695040888963407u;
-    uint32_t mixed = (uint32_t)(((old >> 18) ^ old) >> 27);
-    uint32_t turn = (uint32_t)(old >> 59);
-    return mixed >> turn | mixed << (-turn & 31);
-}
-
-double scene_random_log(scene_random *random, double low, double high)
-{
-    double t = (double)scene_random_next(random) / 4294967296.0;
-    return low * pow(high / low, t);
-}
-
 // ---- what is uploaded
 
 static prom_vertex ball_vertex(uint32_t stack, uint32_t slice, uint32_t detail)
@@ -138,14 +123,30 @@ bool scene_kit_upload(scene_kit *kit, prom_renderer *renderer)
 
 // ---- samples
 
-scene_plan scene_plan_random(scene_random *random, prom_shading shading, const scene_kit *kit)
+// The index-th member of the additive sequence of a step, in [0,1).
+static double spread(uint32_t index, double step)
 {
-    scene_plan plan = {.shading = shading, .layers = 1};
-    plan.detail = scene_random_next(random) % SCENE_DETAILS;
-    plan.items = (uint32_t)scene_random_log(random, 1, MAX_ITEMS + 1);
-    plan.area = (float)scene_random_log(random, 0.02, 0.7);
-    if (shading == PROM_SHADE_BLENDED) plan.layers = 1 + scene_random_next(random) % 4;
-    plan.lit_picture = scene_random_next(random) & 1;
+    double t = 0.5 + step * index;
+    return t - floor(t);
+}
+
+// From low to high as t goes from 0 to 1, evenly in the logarithm.
+static double log_between(double low, double high, double t)
+{
+    return low * pow(high / low, t);
+}
+
+scene_plan scene_plan_at(const scene_kit *kit, prom_shading shading, uint32_t index)
+{
+    // Steps 1/g, 1/g^2, 1/g^3 with g^4 = g + 1 (Roberts 2018). The shadings start apart, so
+    // that together they fill the gaps.
+    index += 1000 * shading;
+    scene_plan plan = {.shading = shading, .layers = 1, .lit_picture = index & 1};
+    plan.items = (uint32_t)log_between(1, MAX_ITEMS + 1, spread(index, 0.8191725133961645));
+    double side = spread(index, 0.6710436067037893);
+    plan.area = (float)(0.02 + 0.98 * side * side);
+    plan.detail = (uint32_t)(SCENE_DETAILS * spread(index, 0.5497004779019703));
+    if (shading == PROM_SHADE_BLENDED) plan.layers = 1 + index % 4;
     if (shading != PROM_SHADE_IMPOSTOR &&
         plan.items > MAX_TRIANGLES / kit->triangles[plan.detail])
         plan.items = MAX_TRIANGLES / kit->triangles[plan.detail];
@@ -170,7 +171,8 @@ void scene_fill_list(const scene_kit *kit, const scene_plan *plan, float aspect,
 {
     // Cells that are about square in pixels; x and y of clip space run from -1 to 1.
     uint32_t cells = (plan->items + plan->layers - 1) / plan->layers;
-    uint32_t columns = (uint32_t)ceilf(sqrtf((float)cells * aspect));
+    uint32_t columns = (uint32_t)(sqrtf((float)cells * aspect) + 0.5f);
+    columns = columns ? columns : 1;
     uint32_t rows = (cells + columns - 1) / columns;
     float width = 2.0f / (float)columns, height = 2.0f / (float)rows;
     float reach = 0.5f * sqrtf(plan->area); // half a cell times the side that is covered

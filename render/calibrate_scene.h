@@ -25,18 +25,11 @@ typedef struct scene_kit {
     uint32_t triangles[SCENE_DETAILS], vertices[SCENE_DETAILS];
 } scene_kit;
 
-// A small random generator with a state of its own: the same samples everywhere (PCG, O'Neill
-// 2014).
-typedef struct scene_random {
-    uint64_t state;
-} scene_random;
-uint32_t scene_random_next(scene_random *random);
-// In [low, high), evenly in the logarithm.
-double scene_random_log(scene_random *random, double low, double high);
-
 // false when the device has no memory left. Replaces the renderer's materials.
 bool scene_kit_upload(scene_kit *kit, prom_renderer *renderer);
-scene_plan scene_plan_random(scene_random *random, prom_shading shading, const scene_kit *kit);
+// The plan of a shading's index-th sample: spread evenly over sizes, numbers and details
+// however many samples are taken (quasi-random), and the same everywhere.
+scene_plan scene_plan_at(const scene_kit *kit, prom_shading shading, uint32_t index);
 // Fills and prepares the list. Draw it with the identity as projection.
 void scene_fill_list(const scene_kit *kit, const scene_plan *plan, float aspect,
                      prom_draw_list *list);
