@@ -19,7 +19,7 @@
 
 void prom_eval_init(prom_eval *eval, const prom_model *model)
 {
-    *eval = (prom_eval){.model = model};
+    *eval = (prom_eval){.model = model, .tolerance = 1.0f};
     size_t options = 0;
     for (uint32_t n = 0; n < model->tree_count; n++) {
         options += model->prototypes[model->prototype[n]].rep_count;
@@ -159,7 +159,8 @@ bool prom_eval_open_visible(void *user, uint32_t node)
     float best = 0.0f;
     for (uint32_t i = 0; i < n->option_count; i++)
         best = fmaxf(best, eval->options[n->first_option + i].benefit);
-    return n->px - best >= (n->size_px < TINY_SIZE_PX ? TINY_LOSS_PX : SMALL_LOSS_PX);
+    float loss = n->size_px < TINY_SIZE_PX ? TINY_LOSS_PX : SMALL_LOSS_PX;
+    return n->px - best >= loss * eval->tolerance;
 }
 
 // ---- bottom up: costs and cmin

@@ -45,6 +45,7 @@ typedef struct prom_eval {
     prom_option *options;
     uint32_t option_count;
     double fixed_ms;     // fixed part of the frame and the background layer
+    float tolerance;     // factor on what prom_eval_open_visible takes for invisible
     float *in_view, *px; // of the children of one node
     uint32_t max_children;
 } prom_eval;

@@ -7,6 +7,18 @@
 #include "traverse/evaluate.h"
 #include "traverse/selectors.h"
 
+#include <math.h>
+
+// When everything that is visibly better has been bought and this part of the budget is left,
+// the tree is gone over again with a tolerance of a 32nd of a pixel a node: if that takes no
+// more than this part of the budget, at so much a node (measured: 0.3 to 0.6 µs) and so many
+// more nodes at most.
+#define CLOSER_LEFT 0.2
+#define CLOSER_TOLERANCE 0.0625f
+#define CLOSER_TIME 0.1
+#define CLOSER_NODES 8.0
+#define NODE_MS 6e-4
+
 // A node of the cut with its place in a chain.
 typedef struct placed {
     uint32_t node;
@@ -96,15 +108,18 @@ static bool next_action(greedy_state *g, uint32_t node, prom_chain_state *next, 
     return true;
 }
 
-static void buy_steps(greedy_state *g, double total, double budget)
+// Buys until a step does not fit, or there is none left; returns what is left of the budget in
+// that case, else 0.
+static double buy_steps(greedy_state *g, double total, double budget)
 {
     while (g->heap.count) {
         uint32_t node = g->heap.entries[0].node;
         prom_chain_state next;
         bool hand_over;
-        if (!next_action(g, node, &next, &hand_over)) return;
-        total += next.cost - states_of(g, node)[g->place[node]].cost;
-        if (total > budget) return;
+        if (!next_action(g, node, &next, &hand_over)) return 0.0;
+        double change = next.cost - states_of(g, node)[g->place[node]].cost;
+        if (total + change > budget) return 0.0;
+        total += change;
         prom_heap_pop(&g->heap);
         if (hand_over) {
             g->opened[node] = true;
@@ -114,6 +129,7 @@ static void buy_steps(greedy_state *g, double total, double budget)
             place_stacked(g, 1);
         }
     }
+    return fmax(budget - total, 0.0);
 }
 
 static void emit_cut(greedy_state *g, prom_cut *cut)
@@ -139,10 +155,13 @@ static void emit_cut(greedy_state *g, prom_cut *cut)
     }
 }
 
-static void select_greedy(void *pointer, const prom_selection *selection, prom_cut *cut)
+// One whole selection; returns as buy_steps does.
+static double select_once(greedy_state *g, const prom_selection *selection, float tolerance,
+                          prom_cut *cut)
 {
-    greedy_state *g = pointer;
     prom_eval *eval = &g->eval;
+    double left = 0.0;
+    eval->tolerance = tolerance;
     prom_eval_run(eval, selection, prom_eval_open_visible, eval);
     prom_eval_begin_cut(eval, cut);
     if (!eval->nodes[0].culled) {
@@ -152,10 +171,31 @@ static void select_greedy(void *pointer, const prom_selection *selection, prom_c
         g->stack[0] = (placed){0, 0};
         place_stacked(g, 1);
         // Rounding of the running sum must not lift the finished cut over the budget.
-        buy_steps(g, eval->fixed_ms + eval->nodes[0].cmin, selection->budget_ms * (1.0 - 1e-9));
+        left = buy_steps(g, eval->fixed_ms + eval->nodes[0].cmin,
+                         selection->budget_ms * (1.0 - 1e-9));
         emit_cut(g, cut);
     }
     prom_eval_end_cut(eval, cut);
+    return left;
+}
+
+// Whether the time that is left allows to go over more of the tree.
+static bool can_look_closer(const greedy_state *g, double left_ms)
+{
+    double nodes = fmin(g->eval.model->tree_count, CLOSER_NODES * g->eval.visited_count);
+    return left_ms > CLOSER_LEFT * g->eval.selection->budget_ms &&
+           nodes * NODE_MS < CLOSER_TIME * g->eval.selection->budget_ms;
+}
+
+static void select_greedy(void *pointer, const prom_selection *selection, prom_cut *cut)
+{
+    greedy_state *g = pointer;
+    double left = select_once(g, selection, 1.0f, cut);
+    if (!can_look_closer(g, left)) return;
+    double cmin_ms = cut->cmin_ms, benefit = cut->benefit;
+    select_once(g, selection, CLOSER_TOLERANCE, cut);
+    if (cut->benefit < benefit) select_once(g, selection, 1.0f, cut);
+    cut->cmin_ms = cmin_ms;
 }
 
 const prom_selector_class prom_select_greedy = {
