@@ -209,7 +209,7 @@ static prom_status run(const char *path, const prom_import_options *options,
     } else {
         int state = 0;
         // Processor time stands still in a loader that waits: twice that by the wall clock.
-        bool in_time = wait_for(pid, options->time_s * 2.0 + 5.0, &state);
+        bool in_time = wait_for(pid, options->time_s * 2.0 + 2.0, &state);
         bool good = in_time && WIFEXITED(state) && WEXITSTATUS(state) == 0;
         status = good ? unpack(path, &c, source, error)
                       : failed(path, options, &c, state, in_time, error);
