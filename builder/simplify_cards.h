@@ -13,6 +13,9 @@ typedef struct prom_component {
     uint32_t triangles;
     uint32_t submesh;
     float area;
+    float facing[3]; // sum of the triangles' area vectors: 0 where the component is closed
+    float volume;    // signed, of closed components
+    float origin[3]; // one of its points
     float center[3]; // area-weighted
     prom_box box;
 } prom_component;
@@ -22,15 +25,16 @@ typedef struct prom_component {
 uint32_t prom_work_components(const prom_work *work, const prom_index_array *faces,
                               uint32_t *of, prom_component **components);
 
-// Parts the triangles into leaf cards and the rest. Cards: components of at most 4 triangles,
-// small against the mesh, at least 12 of them in a submesh; where `mostly`, also at least as
-// many triangles as the submesh has other components' times 4 (4 a component on average).
-void prom_work_split_cards(const prom_work *work, bool mostly, prom_index_array *solid,
-                           prom_index_array *cards);
+// Parts the triangles into leaf cards and the rest. Cards: open or flat components of at most
+// 16 triangles, small against the mesh, at least 12 of them in a submesh; where `mostly`, also
+// at least half of the submesh's triangles. Returns the cards' mean extent (0 without cards).
+float prom_work_split_cards(const prom_work *work, bool mostly, prom_index_array *solid,
+                            prom_index_array *cards);
 
-// Thins cards to about `target` triangles; appends the grown ones' vertices to the work.
+// Thins cards to about `target` triangles and makes the others grow by `growth` more (of the
+// area; what was lost before); appends the grown ones' vertices to the work.
 void prom_work_thin_cards(prom_work *work, const prom_index_array *cards, uint32_t target,
-                          prom_index_array *out);
+                          float growth, prom_index_array *out);
 
 // Removes the smallest components while more than `target` triangles are left and they are
 // smaller than max_extent.

@@ -55,22 +55,20 @@ static void append(const compact *c, const uint32_t *result, size_t count,
     for (size_t i = 0; i < count; i++) prom_array_push(out, c->vertices[result[i]]);
 }
 
-// One run in one reading. `out` holds representatives.
-static void run(const prom_work *work, const prom_index_array *faces,
-                const prom_collapse_options *options, const uint32_t *representative,
-                prom_index_array *out, float *error)
+void prom_work_collapse_run(const prom_work *work, const uint32_t *faces, size_t count,
+                            const prom_collapse_options *options,
+                            const uint32_t *representative, prom_index_array *out, float *error)
 {
-    compact c = compact_init(work, faces->data, faces->count, representative);
-    uint32_t *result = prom_alloc(faces->count, sizeof *result);
+    compact c = compact_init(work, faces, count, representative);
+    uint32_t *result = prom_alloc(count, sizeof *result);
     float scale = meshopt_simplifyScale(c.positions[0], c.count, sizeof *c.positions);
     float relative = 0;
-    size_t n = meshopt_simplify(
-        result, c.indices, faces->count, c.positions[0], c.count, sizeof *c.positions,
-        (size_t)options->target * 3, relative_limit(options->max_error, scale),
-        options->lock_border ? meshopt_SimplifyLockBorder : 0, &relative);
-    out->count = 0;
+    size_t n =
+        meshopt_simplify(result, c.indices, count, c.positions[0], c.count, sizeof *c.positions,
+                         (size_t)options->target * 3, relative_limit(options->max_error, scale),
+                         options->lock_border ? meshopt_SimplifyLockBorder : 0, &relative);
     append(&c, result, n, out);
-    *error = relative * scale;
+    *error = fmaxf(*error, relative * scale);
     prom_free(result);
     compact_finish(&c);
 }
@@ -115,8 +113,10 @@ void prom_work_collapse(const prom_work *work, const prom_index_array *faces,
         // Next to nothing is merged by this reading: it would bring the same again.
         if (!first && n + n / 64 >= last_distinct) continue;
         last_distinct = n;
-        float trial_error;
-        run(work, faces, options, reading, &trial, &trial_error);
+        float trial_error = 0;
+        trial.count = 0;
+        prom_work_collapse_run(work, faces->data, faces->count, options, reading, &trial,
+                               &trial_error);
         if (!first && !better(options->target, out->count, *error, trial.count, trial_error))
             continue;
         prom_choose_corners(work, faces, reading, options->plain, &trial);

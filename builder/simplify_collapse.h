@@ -20,6 +20,13 @@ void prom_work_collapse(const prom_work *work, const prom_index_array *faces,
                         const prom_collapse_options *options, prom_index_array *out,
                         float *error);
 
+// One run in one reading (see prom_read_vertices): appends the remaining triangles to `out`,
+// still made of representatives, which prom_choose_corners has to replace; *error is raised.
+void prom_work_collapse_run(const prom_work *work, const uint32_t *faces, size_t count,
+                            const prom_collapse_options *options,
+                            const uint32_t *representative, prom_index_array *out,
+                            float *error);
+
 // Vertex clustering, owner by owner in proportion; may leave nothing of specks.
 void prom_work_sloppy(const prom_work *work, const prom_index_array *faces, uint32_t target,
                       float max_error, prom_index_array *out, float *error);

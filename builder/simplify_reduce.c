@@ -3,11 +3,15 @@
 #include "builder/simplify_cards.h"
 #include "builder/simplify_collapse.h"
 #include "builder/simplify_distance.h"
+#include "builder/simplify_keep.h"
 
 #include <math.h>
 
 // Up to here every vertex and centroid is measured (MAX_SAMPLES of simplify_distance.c).
 enum { MEASURED_TRIANGLES = 10000 };
+// Cards of many triangles lose those first that cost no more than this share of a card's
+// extent.
+#define CARD_DETAIL 0.04f
 
 static float triangle_area(const prom_work *work, const uint32_t *t)
 {
@@ -42,10 +46,33 @@ static void restore_vanished(const prom_work *work, prom_index_array *out)
     prom_free(present);
 }
 
+static float area_of(const prom_work *work, const prom_index_array *faces)
+{
+    double area = 0;
+    for (size_t i = 0; i < faces->count; i += 3) area += triangle_area(work, faces->data + i);
+    return (float)area;
+}
+
+static void reduce_cards(prom_work *work, const prom_index_array *cards, uint32_t target,
+                         float extent, bool plain, prom_index_array *out)
+{
+    prom_index_array flat = {0}, thinned = {0};
+    prom_collapse_options detail = {target, CARD_DETAIL * extent, false, plain};
+    float ignored; // the deviation is measured
+    prom_work_collapse(work, cards, &detail, &flat, &ignored);
+    float area = area_of(work, &flat);
+    float growth = area > 0 ? area_of(work, cards) / area : 1;
+    prom_work_thin_cards(work, &flat, target, growth, &thinned);
+    for (size_t i = 0; i < thinned.count; i++) prom_array_push(out, thinned.data[i]);
+    prom_array_finish(&flat);
+    prom_array_finish(&thinned);
+}
+
 float prom_work_reduce(prom_work *work, const prom_reduce_options *options,
                        prom_index_array *out)
 {
-    prom_index_array solid = {0}, cards = {0}, thinned = {0};
+    prom_index_array solid = {0}, cards = {0};
+    float card_extent = 0;
     size_t fronts = work->indices.count / 3;
     double ratio = fronts ? (double)options->target / work->triangles : 0;
     if (options->lock_border || options->keep_cards) {
@@ -53,7 +80,7 @@ float prom_work_reduce(prom_work *work, const prom_reduce_options *options,
         memcpy(solid.data, work->indices.data, work->indices.count * sizeof *solid.data);
         solid.count = work->indices.count;
     } else {
-        prom_work_split_cards(work, !options->plain, &solid, &cards);
+        card_extent = prom_work_split_cards(work, !options->plain, &solid, &cards);
     }
     // In proportion, but an eighth at least for what holds the leaves: a trunk of few triangles
     // is seen more than its number says (by taste).
@@ -68,13 +95,11 @@ float prom_work_reduce(prom_work *work, const prom_reduce_options *options,
     } else {
         prom_collapse_options collapse = {solid_target, options->max_error,
                                           options->lock_border, options->plain};
-        prom_work_collapse(work, &solid, &collapse, out, &estimate);
+        prom_work_collapse_keeping(work, &solid, &collapse, out, &estimate);
     }
     uint32_t card_target = target > solid_target ? target - solid_target : 0;
-    prom_work_thin_cards(work, &cards, card_target, &thinned);
-    for (size_t i = 0; i < thinned.count; i++) prom_array_push(out, thinned.data[i]);
+    if (cards.count) reduce_cards(work, &cards, card_target, card_extent, options->plain, out);
     if (!options->sloppy && !options->plain) restore_vanished(work, out);
-    prom_array_finish(&thinned);
     prom_array_finish(&cards);
     prom_array_finish(&solid);
     float error = prom_work_deviation(work, out);
