@@ -52,12 +52,12 @@ static GLuint link(GLuint vertex, GLuint fragment, prom_error *error)
     return 0;
 }
 
-static prom_status build(program *out, pipeline p, look l, prom_error *error)
+static prom_status build(program *out, pipeline p, look l, bool with_ids, prom_error *error)
 {
     char prefix[160];
     snprintf(prefix, sizeof prefix,
              "#version 450 core\n#define PIPELINE_%s\n#define LOOK_%s\n%s", pipeline_names[p],
-             look_names[l], p == PIPELINE_BLENDED ? "#define WITHOUT_ID\n" : "");
+             look_names[l], with_ids ? "" : "#define WITHOUT_ID\n");
     GLuint vertex = compile(GL_VERTEX_SHADER, prefix, prom_glsl_mesh_vert, error);
     if (!vertex) return PROM_ERR_UNSUPPORTED;
     GLuint fragment = compile(GL_FRAGMENT_SHADER, prefix, prom_glsl_mesh_frag, error);
@@ -70,18 +70,20 @@ static prom_status build(program *out, pipeline p, look l, prom_error *error)
 prom_status programs_init(programs *all, prom_error *error)
 {
     for (pipeline p = 0; p < PIPELINE_COUNT; p++)
-        for (look l = 0; l < LOOK_COUNT; l++) {
-            if (canonical(p, l) != p) continue;
-            prom_status status = build(&all->table[p][l], p, l, error);
-            if (status) return status;
-        }
+        for (look l = 0; l < LOOK_COUNT; l++)
+            for (int ids = 0; ids < 2; ids++) {
+                if (canonical(p, l) != p || (ids && p == PIPELINE_BLENDED)) continue;
+                prom_status status = build(&all->table[p][l][ids], p, l, ids, error);
+                if (status) return status;
+            }
     return PROM_OK;
 }
 
 void programs_finish(programs *all)
 {
-    for (pipeline p = 0; p < PIPELINE_COUNT; p++)
-        for (look l = 0; l < LOOK_COUNT; l++) glDeleteProgram(all->table[p][l].name);
+    program *first = &all->table[0][0][0];
+    for (size_t i = 0; i < sizeof all->table / sizeof *first; i++)
+        glDeleteProgram(first[i].name);
     *all = (programs){0};
 }
 
@@ -92,7 +94,8 @@ look look_of_output(prom_output output)
                                         : LOOK_COLOR;
 }
 
-program *programs_get(programs *all, pipeline p, look l)
+program *programs_get(programs *all, pipeline p, look l, bool with_ids)
 {
-    return &all->table[canonical(p, l)][l];
+    pipeline c = canonical(p, l);
+    return &all->table[c][l][with_ids && c != PIPELINE_BLENDED];
 }

@@ -1,4 +1,4 @@
-// The shader programs: one per pipeline and look. Private to render/.
+// The shader programs: one per pipeline and look, with and without ids. Private to render/.
 #ifndef PROM_RENDER_PROGRAMS_H
 #define PROM_RENDER_PROGRAMS_H
 
@@ -28,7 +28,9 @@ typedef struct program {
 } program;
 
 typedef struct programs {
-    program table[PIPELINE_COUNT][LOOK_COUNT];
+    // Last: 1 writes ids. One that writes them to nowhere costs 5 % where triangles are small,
+    // on llvmpipe (measured).
+    program table[PIPELINE_COUNT][LOOK_COUNT][2];
 } programs; // {0} holds none
 
 // Compiles all. PROM_ERR_UNSUPPORTED with the driver's message if one fails.
@@ -37,6 +39,7 @@ void programs_finish(programs *programs);
 look look_of_output(prom_output output);
 // The program of a pipeline under a look; several pipelines share one where pictures do not
 // show.
-program *programs_get(programs *programs, pipeline pipeline, look look);
+// PIPELINE_BLENDED writes none, whatever is asked for.
+program *programs_get(programs *programs, pipeline pipeline, look look, bool with_ids);
 
 #endif

@@ -47,7 +47,7 @@ static void find_eye(const prom_pass *pass, float eye[4])
 
 static void use_program(const submission *s, pipeline p)
 {
-    program *chosen = programs_get(&s->renderer->programs, p, s->look);
+    program *chosen = programs_get(&s->renderer->programs, p, s->look, s->target->has_ids);
     glUseProgram(chosen->name);
     if (chosen->submit == s->renderer->submits) return;
     chosen->submit = s->renderer->submits;
