@@ -14,6 +14,7 @@ enum { LONGER = 4, ROOMY_FACTOR = 4, MOST_HALVINGS = 8 };
 typedef struct spot {
     prom_face face;
     double at[3]; // centroid
+    double size;  // longest extent
     uint32_t order, octant;
 } spot;
 
@@ -24,6 +25,9 @@ static spot *find_spots(const prom_finder *finder, const prom_face *faces, size_
         spots[i].face = faces[i];
         spots[i].order = (uint32_t)i;
         prom_face_centroid(finder, faces[i], spots[i].at);
+        prom_wbox box = prom_faces_bounds(finder, &faces[i], 1);
+        int axis = prom_wbox_longest_axis(&box);
+        spots[i].size = box.max[axis] - box.min[axis];
     }
     return spots;
 }
@@ -51,19 +55,22 @@ static void emit(chunker *c, const spot *spots, size_t count)
     c->faces += count;
 }
 
-// Sorts the spots of a cell by octant; start[o]..start[o + 1] is octant o's share.
+// Sorts the spots of a cell by octant; start[o]..start[o + 1] is octant o's share, the ninth
+// that of triangles far larger than any chunk should be, which would spoil those of their
+// neighbours.
 static void sort_octants(chunker *c, spot *spots, size_t count, const double middle[3],
-                         size_t start[9])
+                         double edge, size_t start[10])
 {
-    memset(start, 0, 9 * sizeof *start);
+    memset(start, 0, 10 * sizeof *start);
     for (size_t i = 0; i < count; i++) {
         const double *p = spots[i].at;
         unsigned o = (p[0] >= middle[0]) + 2u * (p[1] >= middle[1]) + 4u * (p[2] >= middle[2]);
+        if (spots[i].size > fmax(edge, LONGER * c->base)) o = 8;
         spots[i].octant = o;
         start[o + 1]++;
     }
-    for (int o = 0; o < 8; o++) start[o + 1] += start[o];
-    size_t at[8];
+    for (int o = 0; o < 9; o++) start[o + 1] += start[o];
+    size_t at[9];
     memcpy(at, start, sizeof at);
     for (size_t i = 0; i < count; i++) c->temp[at[spots[i].octant]++] = spots[i];
     memcpy(spots, c->temp, count * sizeof *spots);
@@ -78,8 +85,8 @@ static void chunk_octants(chunker *c, spot *spots, size_t count, const double co
 {
     double half = edge / 2, middle[3];
     for (int k = 0; k < 3; k++) middle[k] = corner[k] + half;
-    size_t start[9], rest = 0;
-    sort_octants(c, spots, count, middle, start);
+    size_t start[10], rest = 0;
+    sort_octants(c, spots, count, middle, edge, start);
     spot *left = prom_alloc(count, sizeof *left);
     for (int o = 0; o < 8; o++) {
         size_t n = start[o + 1] - start[o];
@@ -93,6 +100,7 @@ static void chunk_octants(chunker *c, spot *spots, size_t count, const double co
         }
     }
     if (rest) emit(c, left, rest);
+    if (start[9] > start[8]) emit(c, spots + start[8], start[9] - start[8]);
     prom_free(left);
 }
 
