@@ -200,7 +200,7 @@ typedef struct field {
 
 static double radius_of(int r)
 {
-    return 0.2 + 0.75 * r / (RADII - 1);
+    return 0.25 + 0.7 * r / (RADII - 1);
 }
 
 static void fill_field(const layout *l, field *f)
@@ -219,7 +219,7 @@ static void fill_field(const layout *l, field *f)
             double x, z, radius = radius_of(r);
             to_plane(l, 2 * M_PI * a / ANGLES, radius, &x, &z);
             // Dense places, the middle half of the layout, free places.
-            double cost = 1 - f->cost[a][r] / most + 0.5 * (radius - 0.55) * (radius - 0.55);
+            double cost = 1 - f->cost[a][r] / most + 2 * (radius - 0.55) * (radius - 0.55);
             double in = inside(l, x, ground_at(l, x, z) + l->eye, z);
             f->cost[a][r] = cost + (in > 0 ? WALL_COST * (0.2 + in) : 0);
         }

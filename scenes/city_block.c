@@ -174,7 +174,7 @@ static void fill_square(filler *f)
 // Along one side of the block from (x, z) in the yaw's +x direction; the street is at its +z.
 static void fill_side(filler *f, float x, float z, float yaw, float length)
 {
-    float c = cosf(yaw), s = sinf(yaw), step = 7;
+    float c = cosf(yaw), s = sinf(yaw), step = 8.5f;
     uint32_t n = (uint32_t)((length - 12) / step);
     for (uint32_t i = 0; i <= n; i++) {
         float along = (length - step * (float)n) / 2 + step * (float)i, in = -0.95f;

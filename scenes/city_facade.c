@@ -350,7 +350,7 @@ static void build_opening(prom_city *city, prom_shape *shape, const prom_facade 
         build_shop(city, shape, f, rectangle, awning, random);
     } else {
         prom_city_build_window(city, shape, f, rectangle, random);
-        if (f->surrounds) build_surround(shape, f, rectangle, f->pediments && o->storey == 1);
+        if (f->surrounds && f->detail > 1) build_surround(shape, f, rectangle, f->pediments && o->storey == 1);
         float leaf = (o->x1 - o->x0) / 2;
         if (f->shutters && o->storey) {
             build_shutter(shape, f, o->x0 - leaf - 0.02f, o->y0, o->x0 - 0.02f, o->y1);

@@ -263,7 +263,7 @@ static void plant_land(prom_city *city, const land *l, uint32_t parent)
     float w = l->x1 - l->x0, d = l->z1 - l->z0;
     uint32_t first = city->first[PROM_CITY_TREE];
     uint32_t kinds = city->first[PROM_CITY_TREE + 1] - first;
-    uint32_t wanted = (uint32_t)((w + d) / 7);
+    uint32_t wanted = (uint32_t)((w + d) / 10);
     for (uint32_t i = 0; i < wanted; i++) {
         float out = 9 + 140 * prom_random_unit(&random) * prom_random_unit(&random);
         float along = prom_random_between(&random, -out, (i % 2 ? d : w) + out);

@@ -19,12 +19,12 @@ typedef struct style {
     ((table)[prom_random_below((random), sizeof(table) / sizeof *(table))])
 
 // Colours chosen by taste: bricks, limes and stones of a northern town.
-static const uint32_t bricks[] = {0xc27a5c, 0xb5644a, 0xa8584a, 0xc98f66, 0x9a5a4c, 0xd0a27c};
+static const uint32_t bricks[] = {0xc98a6e, 0xbf7a62, 0xb26e5e, 0xcf9c78, 0xa87264, 0xd6b08e};
 static const uint32_t limes[] = {0xf2e3c4, 0xe9cf9f, 0xf0d9b0, 0xe8b98e, 0xdca58c, 0xcfd8c4,
                                  0xb9cbd2, 0xf4efe4, 0xe3c4bd, 0xd8c9a8, 0xbfcfae, 0xe6dfd2};
 static const uint32_t stones[] = {0xd9cfbb, 0xcbbfa6, 0xc2bdb2, 0xe0d2b4};
-static const uint32_t clays[] = {0xc4694a, 0xb4583f, 0xa5503c, 0xcf7d58, 0x9c5a48};
-static const uint32_t slates[] = {0x76808c, 0x666c76, 0x7d7a80, 0x5f6a70};
+static const uint32_t clays[] = {0xc97f62, 0xbd7056, 0xb06852, 0xd4906c, 0xa86e5c};
+static const uint32_t slates[] = {0x828b95, 0x737983, 0x8a878b, 0x6c767c};
 static const uint32_t trims[] = {0xf4f0e6, 0xe9e2d2, 0xd8d0c0, 0xfaf8f2};
 static const uint32_t doors[] = {0x2f5d50, 0x7a2f2a, 0x2c4a6e, 0x5a4632,
                                  0x3d3d40, 0x8a5a2c, 0x466b3a, 0x6e2f4a};
@@ -256,7 +256,7 @@ void prom_city_build_house(prom_city *city, const prom_city_prototype *which, pr
         .depth = s.depth,
         .base = s.floors[s.storeys],
         .pitch = s.pitch,
-        .side_overhang = s.corner ? 0.25f : 0,
+        .side_overhang = s.corner ? 0.25f : 0.03f,
         .cover =
             prom_city_paint(city, s.cover, s.roof_rgb, s.cover == PROM_CITY_TILES ? 2.6f : 2),
         .wall = front.wall,

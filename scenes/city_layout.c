@@ -7,7 +7,7 @@
 // ---- the plan
 
 // Outer sizes of blocks, pavement included. Few of them, so that their grounds are shared.
-static const float sizes[] = {56, 61, 66};
+static const float sizes[] = {51, 56, 61};
 
 static float *draw_lines(uint32_t blocks, prom_random *random)
 {

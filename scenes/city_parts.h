@@ -115,7 +115,7 @@ typedef struct prom_roof {
     prom_roof_kind kind;
     float width, depth, base; // of the house; height of its walls
     float pitch;              // rise / run
-    float side_overhang;      // 0 in a row
+    float side_overhang;      // hardly any in a row, but no face may lie in another's plane
     prom_paint cover, wall, trim, brick;
     uint32_t dormers, chimneys;
     prom_facade window; // of dormers

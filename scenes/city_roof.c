@@ -84,8 +84,8 @@ static void build_slope(prom_shape *shape, const prom_roof *roof, const float a[
     glm_vec3_lerp(s.d, s.c, 0.5f, mid_high);
     float length = glm_vec3_distance(mid_low, mid_high), width = glm_vec3_norm(ab);
     if (roof->detail >= 3) {
-        s.rows = (int)fmaxf(2, roundf(length / (roof->detail == 3 ? 0.42f : 0.34f)));
-        s.columns = (int)fmaxf(2, roundf(width / (roof->detail == 3 ? 0.8f : 0.42f)));
+        s.rows = (int)fmaxf(2, roundf(length / (roof->detail == 3 ? 0.36f : 0.27f)));
+        s.columns = (int)fmaxf(2, roundf(width / (roof->detail == 3 ? 0.62f : 0.24f)));
         s.step = 0.035f;
         s.wave = roof->detail == 3 ? 0.006f : 0.012f;
     }

@@ -85,7 +85,7 @@ static color masonry(float x, float y, int columns, int rows, float joint, float
     int column = wrap((int)floorf(u), columns);
     float edge = fminf(border(u) / (float)columns, border(y * (float)rows) / (float)rows);
     float tone =
-        0.86f + variation * (cell_random(column, row, 5) - 0.5f) + 0.10f * rough(x, y, 16, 9);
+        0.93f + variation * (cell_random(column, row, 5) - 0.5f) + 0.10f * rough(x, y, 16, 9);
     color block = {tone, tone * (0.97f + 0.04f * cell_random(column, row, 6)), tone * 0.97f, 1};
     return edge < joint ? grey(0.93f + 0.06f * rough(x, y, 16, 3)) : block;
 }
@@ -111,8 +111,8 @@ static color tiles(float x, float y)
     int row = (int)(y * 8);
     float u = x * 10, v = y * 8 - (float)row;
     float tone =
-        0.74f + 0.20f * sinf(2 * PI * u) + 0.16f * (cell_random((int)u, row, 3) - 0.5f);
-    tone *= v > 0.86f ? 0.55f : 0.9f + 0.1f * v;
+        0.88f + 0.16f * sinf(2 * PI * u) + 0.16f * (cell_random((int)u, row, 3) - 0.5f);
+    tone *= v > 0.88f ? 0.6f : 0.93f + 0.07f * v;
     return grey(fminf(tone + 0.08f * rough(x, y, 16, 4), 1));
 }
 
@@ -120,7 +120,7 @@ static color slate(float x, float y)
 {
     int row = (int)(y * 10);
     float u = x * 8 + (row % 2 ? 0.5f : 0), v = y * 10 - (float)row;
-    float tone = 0.80f + 0.24f * (cell_random(wrap((int)u, 8), row, 3) - 0.5f);
+    float tone = 0.88f + 0.22f * (cell_random(wrap((int)u, 8), row, 3) - 0.5f);
     if (border(u) < 0.05f || v > 0.88f) tone *= 0.6f;
     return grey(tone + 0.08f * rough(x, y, 16, 4));
 }
@@ -192,7 +192,7 @@ static color cobbles(float x, float y)
 static color grass(float x, float y)
 {
     float blade = noise(x, y, 48, 7) - 0.5f, patch = rough(x, y, 4, 1);
-    color green = {0.30f + 0.08f * patch, 0.43f + 0.05f * patch, 0.17f, 1};
+    color green = {0.39f + 0.08f * patch, 0.47f + 0.05f * patch, 0.25f, 1};
     return shade(green, 1 + 0.45f * blade + 0.15f * rough(x, y, 12, 3));
 }
 

@@ -1,0 +1,468 @@
+// LINK: prom_scenes prom_builder prom_metaobj PkgConfig::JANSSON
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "metaobj/base/alloc.h"
+#include "scenes/city.h"
+#include "scenes/glb_writer.h"
+#include "scenes/path.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+// ---- a small reader, apart from the writer
+
+typedef struct glb {
+    uint8_t *bytes;
+    size_t size;
+    json_t *json;
+    const uint8_t *bin;
+    size_t bin_bytes;
+} glb;
+
+static uint32_t word(const uint8_t *p)
+{
+    return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
+}
+
+static void read_bytes(const char *path, uint8_t **bytes, size_t *size)
+{
+    FILE *f = fopen(path, "rb");
+    assert_non_null(f);
+    assert_int_equal(fseek(f, 0, SEEK_END), 0);
+    *size = (size_t)ftell(f);
+    rewind(f);
+    *bytes = prom_alloc(*size, 1);
+    assert_int_equal(fread(*bytes, 1, *size, f), *size);
+    fclose(f);
+}
+
+static void open_glb(const char *path, glb *g)
+{
+    read_bytes(path, &g->bytes, &g->size);
+    assert_true(g->size > 28);
+    assert_memory_equal(g->bytes, "glTF", 4);
+    assert_int_equal(word(g->bytes + 4), 2);
+    assert_int_equal(word(g->bytes + 8), g->size);
+    size_t json_bytes = word(g->bytes + 12);
+    assert_memory_equal(g->bytes + 16, "JSON", 4);
+    assert_int_equal(json_bytes % 4, 0);
+    assert_true(20 + json_bytes + 8 <= g->size);
+    json_error_t error;
+    g->json = json_loadb((const char *)g->bytes + 20, json_bytes, 0, &error);
+    assert_non_null(g->json);
+    g->bin_bytes = word(g->bytes + 20 + json_bytes);
+    assert_memory_equal(g->bytes + 24 + json_bytes, "BIN", 4);
+    g->bin = g->bytes + 28 + json_bytes;
+    assert_int_equal(28 + json_bytes + g->bin_bytes, g->size);
+}
+
+static void close_glb(glb *g)
+{
+    json_decref(g->json);
+    prom_free(g->bytes);
+}
+
+static size_t number(const json_t *object, const char *key)
+{
+    const json_t *value = json_object_get(object, key);
+    return value ? (size_t)json_integer_value(value) : 0;
+}
+
+static json_t *item(const glb *g, const char *array, size_t i)
+{
+    json_t *value = json_array_get(json_object_get(g->json, array), i);
+    assert_non_null(value);
+    return value;
+}
+
+static size_t count_of(const glb *g, const char *array)
+{
+    return json_array_size(json_object_get(g->json, array));
+}
+
+// The bytes of an accessor's elements, checked to lie in the file.
+static const uint8_t *elements(const glb *g, size_t accessor, size_t bytes, size_t *count,
+                               size_t *stride)
+{
+    const json_t *a = item(g, "accessors", accessor);
+    const json_t *v = item(g, "bufferViews", number(a, "bufferView"));
+    size_t start = number(v, "byteOffset") + number(a, "byteOffset");
+    *count = number(a, "count");
+    *stride = number(v, "byteStride") ? number(v, "byteStride") : bytes;
+    assert_true(*count > 0);
+    assert_int_equal(start % 4, 0);
+    assert_true(number(a, "byteOffset") + *stride * (*count - 1) + bytes <=
+                number(v, "byteLength"));
+    assert_true(number(v, "byteOffset") + number(v, "byteLength") <= g->bin_bytes);
+    return g->bin + start;
+}
+
+static size_t mesh_triangles(const glb *g, size_t mesh)
+{
+    size_t n = 0;
+    json_t *primitives = json_object_get(item(g, "meshes", mesh), "primitives");
+    for (size_t i = 0; i < json_array_size(primitives); i++)
+        n += number(item(g, "accessors", number(json_array_get(primitives, i), "indices")),
+                    "count") /
+             3;
+    return n;
+}
+
+// Times that each mesh is shown; also checks that the nodes are a tree.
+static size_t *count_instances(const glb *g)
+{
+    size_t nodes = count_of(g, "nodes"), meshes = count_of(g, "meshes");
+    size_t *uses = prom_calloc(meshes, sizeof *uses),
+           *parents = prom_calloc(nodes, sizeof *parents);
+    size_t edges = 0;
+    for (size_t i = 0; i < nodes; i++) {
+        const json_t *n = item(g, "nodes", i);
+        assert_non_null(json_string_value(json_object_get(n, "name")));
+        if (json_object_get(n, "mesh")) {
+            assert_true(number(n, "mesh") < meshes);
+            uses[number(n, "mesh")]++;
+        }
+        const json_t *children = json_object_get(n, "children");
+        for (size_t k = 0; k < json_array_size(children); k++, edges++) {
+            size_t child = (size_t)json_integer_value(json_array_get(children, k));
+            assert_true(child > i && child < nodes);
+            assert_int_equal(parents[child]++, 0);
+        }
+    }
+    assert_int_equal(edges, nodes - 1); // one root
+    prom_free(parents);
+    return uses;
+}
+
+static uint64_t instanced_triangles(const glb *g)
+{
+    uint64_t n = 0;
+    size_t *uses = count_instances(g);
+    for (size_t i = 0; i < count_of(g, "meshes"); i++) n += uses[i] * mesh_triangles(g, i);
+    prom_free(uses);
+    return n;
+}
+
+// ---- the contents
+
+static void check_vertices(const glb *g, const json_t *primitive, size_t *vertices)
+{
+    const json_t *attributes = json_object_get(primitive, "attributes");
+    size_t stride, n;
+    const json_t *a = item(g, "accessors", number(attributes, "POSITION"));
+    const uint8_t *p = elements(g, number(attributes, "POSITION"), 12, vertices, &stride);
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = 0; i < *vertices; i++) {
+        float v[3];
+        memcpy(v, p + i * stride, sizeof v);
+        for (int k = 0; k < 3; k++) {
+            assert_true(isfinite(v[k]));
+            low[k] = fminf(low[k], v[k]);
+            high[k] = fmaxf(high[k], v[k]);
+        }
+    }
+    for (size_t k = 0; k < 3; k++) {
+        assert_true((float)json_number_value(json_array_get(json_object_get(a, "min"), k)) ==
+                    low[k]);
+        assert_true((float)json_number_value(json_array_get(json_object_get(a, "max"), k)) ==
+                    high[k]);
+    }
+    p = elements(g, number(attributes, "NORMAL"), 12, &n, &stride);
+    assert_int_equal(n, *vertices);
+    for (size_t i = 0; i < n; i++) {
+        float v[3];
+        memcpy(v, p + i * stride, sizeof v);
+        assert_true(fabsf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] - 1) < 1e-4f);
+    }
+    p = elements(g, number(attributes, "TEXCOORD_0"), 8, &n, &stride);
+    assert_int_equal(n, *vertices);
+    for (size_t i = 0; i < n; i++) {
+        float v[2];
+        memcpy(v, p + i * stride, sizeof v);
+        assert_true(isfinite(v[0]) && isfinite(v[1]) && fabsf(v[0]) < 1e4f &&
+                    fabsf(v[1]) < 1e4f);
+    }
+}
+
+static uint32_t index_at(const uint8_t *p, size_t i, bool wide)
+{
+    return wide ? word(p + 4 * i) : (uint32_t)p[2 * i] | (uint32_t)p[2 * i + 1] << 8;
+}
+
+static void load_vertex(const glb *g, const json_t *primitive, const char *what, uint32_t i,
+                        float out[3])
+{
+    size_t n, stride;
+    const json_t *attributes = json_object_get(primitive, "attributes");
+    const uint8_t *p = elements(g, number(attributes, what), 12, &n, &stride);
+    assert_true(i < n);
+    memcpy(out, p + i * stride, 12);
+}
+
+// Triangles by whether their winding agrees with their vertices' normals.
+static void check_triangles(const glb *g, const json_t *primitive, size_t vertices,
+                            size_t sides[2], size_t *empty)
+{
+    size_t n, stride;
+    const json_t *a = item(g, "accessors", number(primitive, "indices"));
+    bool wide = number(a, "componentType") == 5125;
+    assert_true(wide || number(a, "componentType") == 5123);
+    const uint8_t *p = elements(g, number(primitive, "indices"), wide ? 4 : 2, &n, &stride);
+    assert_int_equal(n % 3, 0);
+    for (size_t i = 0; i < n; i += 3) {
+        float v[3][3], m[3] = {0}, c[3];
+        for (size_t k = 0; k < 3; k++) {
+            float normal[3];
+            uint32_t id = index_at(p, i + k, wide);
+            assert_true(id < vertices);
+            load_vertex(g, primitive, "POSITION", id, v[k]);
+            load_vertex(g, primitive, "NORMAL", id, normal);
+            for (int j = 0; j < 3; j++) m[j] += normal[j];
+        }
+        for (int j = 0; j < 3; j++) {
+            int x = (j + 1) % 3, y = (j + 2) % 3;
+            c[j] = (v[1][x] - v[0][x]) * (v[2][y] - v[0][y]) -
+                   (v[1][y] - v[0][y]) * (v[2][x] - v[0][x]);
+        }
+        float area = sqrtf(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
+        *empty += area < 1e-9f;
+        sides[c[0] * m[0] + c[1] * m[1] + c[2] * m[2] < -1e-3f * area]++;
+    }
+}
+
+static void make_city(const char *path, const char *walk, prom_city_options options,
+                      uint64_t *triangles)
+{
+    prom_error error = {0};
+    assert_int_equal(prom_city_write(path, walk, &options, triangles, &error), PROM_OK);
+    char *part = prom_format("%s.part", path);
+    assert_int_equal(access(part, F_OK), -1);
+    prom_free(part);
+    part = prom_format("%s.bin.part", path);
+    assert_int_equal(access(part, F_OK), -1);
+    prom_free(part);
+}
+
+static void test_same_seed_same_city(void **unused)
+{
+    (void)unused;
+    uint8_t *a, *b, *c;
+    size_t na, nb, nc;
+    prom_city_options options = {.seed = 5, .blocks = 2, .detail = 2, .styles = 8};
+    make_city("test_city_a.glb", NULL, options, NULL);
+    make_city("test_city_b.glb", NULL, options, NULL);
+    options.seed = 6;
+    make_city("test_city_c.glb", NULL, options, NULL);
+    read_bytes("test_city_a.glb", &a, &na);
+    read_bytes("test_city_b.glb", &b, &nb);
+    read_bytes("test_city_c.glb", &c, &nc);
+    assert_int_equal(na, nb);
+    assert_memory_equal(a, b, na);
+    assert_true(na != nc || memcmp(a, c, na));
+    prom_free(a);
+    prom_free(b);
+    prom_free(c);
+    unlink("test_city_a.glb");
+    unlink("test_city_b.glb");
+    unlink("test_city_c.glb");
+}
+
+static void check_city(prom_city_options options)
+{
+    glb g = {0};
+    uint64_t triangles = 0;
+    make_city("test_city_d.glb", NULL, options, &triangles);
+    open_glb("test_city_d.glb", &g);
+    assert_true(triangles == instanced_triangles(&g));
+    for (size_t m = 0; m < count_of(&g, "meshes"); m++) {
+        const json_t *mesh = item(&g, "meshes", m);
+        const json_t *primitives = json_object_get(mesh, "primitives");
+        size_t sides[2] = {0}, empty = 0;
+        for (size_t i = 0; i < json_array_size(primitives); i++) {
+            const json_t *p = json_array_get(primitives, i);
+            const json_t *material = item(&g, "materials", number(p, "material"));
+            size_t vertices;
+            check_vertices(&g, p, &vertices);
+            size_t unused_sides[2] = {0};
+            // A leaf card is seen from both sides and lit as part of its crown.
+            check_triangles(
+                &g, p, vertices,
+                json_is_true(json_object_get(material, "doubleSided")) ? unused_sides : sides,
+                &empty);
+        }
+        assert_int_equal(sides[1], 0);
+        assert_true(empty * 100 <= mesh_triangles(&g, m));
+    }
+    for (size_t i = 0; i < count_of(&g, "images"); i++) {
+        const json_t *v = item(&g, "bufferViews", number(item(&g, "images", i), "bufferView"));
+        assert_memory_equal(g.bin + number(v, "byteOffset"), "\x89PNG", 4);
+    }
+    close_glb(&g);
+    unlink("test_city_d.glb");
+}
+
+static void test_geometry_is_sound(void **unused)
+{
+    (void)unused;
+    for (uint32_t detail = 1; detail <= 4; detail++)
+        check_city((prom_city_options){
+            .seed = detail, .blocks = detail == 2 ? 3 : 2, .detail = detail, .styles = 24});
+    check_city((prom_city_options){.seed = 9, .blocks = 1, .detail = 1, .styles = 1});
+}
+
+// The measures of the large city, at its number of styles but fewer blocks and less detail.
+static void test_many_prototypes(void **unused)
+{
+    (void)unused;
+    glb g = {0};
+    uint64_t triangles = 0;
+    size_t shown = 0;
+    make_city("test_city_e.glb", NULL,
+              (prom_city_options){.seed = 1, .blocks = 8, .detail = 1, .styles = 180},
+              &triangles);
+    open_glb("test_city_e.glb", &g);
+    size_t *uses = count_instances(&g);
+    for (size_t i = 0; i < count_of(&g, "meshes"); i++) {
+        shown += uses[i] > 0;
+        assert_true((double)(uses[i] * mesh_triangles(&g, i)) < 0.05 * (double)triangles);
+    }
+    assert_true(shown >= 200);
+    prom_free(uses);
+    close_glb(&g);
+    unlink("test_city_e.glb");
+}
+
+// ---- the walk
+
+
+static void test_walk(void **unused)
+{
+    (void)unused;
+    for (uint32_t blocks = 1; blocks <= 5; blocks += 2) {
+        prom_city_options options = {.seed = blocks, .blocks = blocks, .detail = 1};
+        prom_path path;
+        prom_error error = {0};
+        glb g = {0};
+        make_city("test_city_f.glb", "test_city_f.path", options, NULL);
+        assert_int_equal(prom_path_load("test_city_f.path", &path, &error), PROM_OK);
+        assert_int_equal(path.keys.count, 600);
+        open_glb("test_city_f.glb", &g);
+        const prom_path_key *k = path.keys.data;
+        for (size_t i = 0; i < 600; i++) {
+            assert_true(k[i].position[1] == 1.7);
+            if (!i) continue;
+            double step = hypot(k[i].position[0] - k[i - 1].position[0],
+                                k[i].position[2] - k[i - 1].position[2]);
+            assert_true(step > 0.05 && step < 0.15); // about 3 m/s
+            double dot = 0;
+            for (int j = 0; j < 4; j++)
+                dot += (double)(k[i].orientation[j] * k[i - 1].orientation[j]);
+            assert_true(fabs(dot) > cos(0.04)); // under five degrees a frame
+        }
+        // On the carriageway: nothing but ground within a metre and a half.
+        for (size_t b = 0; b < count_of(&g, "nodes"); b++) {
+            const json_t *block = item(&g, "nodes", b),
+                         *at = json_object_get(block, "translation");
+            const char *name = json_string_value(json_object_get(block, "name"));
+            if (strncmp(name, "block_", 6)) continue;
+            const json_t *children = json_object_get(block, "children");
+            for (size_t c = 0; c < json_array_size(children); c++) {
+                const json_t *n =
+                    item(&g, "nodes", (size_t)json_integer_value(json_array_get(children, c)));
+                const json_t *t = json_object_get(n, "translation");
+                if (!strcmp(json_string_value(json_object_get(n, "name")), "ground")) continue;
+                double x = json_number_value(json_array_get(at, 0)) +
+                           json_number_value(json_array_get(t, 0));
+                double z = json_number_value(json_array_get(at, 2)) +
+                           json_number_value(json_array_get(t, 2));
+                for (size_t i = 0; i < 600; i += 5)
+                    assert_true(hypot(k[i].position[0] - x, k[i].position[2] - z) > 1.5);
+            }
+        }
+        close_glb(&g);
+        prom_path_finish(&path);
+    }
+    unlink("test_city_f.glb");
+    unlink("test_city_f.path");
+}
+
+// ---- refusals
+
+static void test_bad_options(void **unused)
+{
+    (void)unused;
+    prom_error error = {0};
+    assert_int_equal(prom_city_write("test_city_g.glb", NULL,
+                                     &(prom_city_options){.blocks = 1000}, NULL, &error),
+                     PROM_ERR_USAGE);
+    assert_int_equal(prom_city_write("test_city_g.glb", NULL, &(prom_city_options){.detail = 5},
+                                     NULL, &error),
+                     PROM_ERR_USAGE);
+    assert_int_equal(prom_city_write("test_city_g.glb", NULL,
+                                     &(prom_city_options){.styles = 1u << 20}, NULL, &error),
+                     PROM_ERR_USAGE);
+    assert_int_equal(access("test_city_g.glb", F_OK), -1);
+    prom_city_options small = {.blocks = 1, .detail = 1, .styles = 3};
+    assert_int_equal(prom_city_write("no/such/x.glb", NULL, &small, NULL, &error),
+                     PROM_ERR_OUTPUT);
+    assert_non_null(strstr(error.text, "no/such/x.glb"));
+    assert_int_equal(prom_city_write("test_city_g.glb", "no/such/x.path", &small, NULL, &error),
+                     PROM_ERR_OUTPUT);
+    assert_int_equal(access("test_city_g.glb", F_OK), -1);
+}
+
+// Meshes above 65535 vertices have 32-bit indices.
+static void test_wide_indices(void **unused)
+{
+    (void)unused;
+    for (uint32_t n = 65535; n <= 65536; n++) {
+        prom_glb *out = prom_glb_create("test_city_h.glb");
+        prom_glb_vertex *vertices = prom_calloc(n, sizeof *vertices);
+        for (uint32_t i = 0; i < n; i++) {
+            vertices[i].position[0] = (float)i;
+            vertices[i].normal[1] = 1;
+        }
+        uint32_t indices[3] = {0, 1, n - 1};
+        prom_glb_material material = {.name = "m", .image = PROM_GLB_NONE};
+        prom_glb_part part = {prom_glb_add_material(out, &material), vertices, indices, n, 3};
+        uint32_t mesh = prom_glb_add_mesh(out, "mesh", &part, 1);
+        prom_glb_add_node(
+            out, &(prom_glb_node){
+                     .name = "node", .parent = PROM_GLB_NONE, .mesh = mesh, .scale = 1});
+        prom_error error = {0};
+        assert_int_equal(prom_glb_finish(out, "test", &error), PROM_OK);
+        prom_glb_destroy(out);
+        prom_free(vertices);
+        glb g = {0};
+        open_glb("test_city_h.glb", &g);
+        const json_t *p =
+            json_array_get(json_object_get(item(&g, "meshes", 0), "primitives"), 0);
+        const json_t *a = item(&g, "accessors", number(p, "indices"));
+        bool wide = number(a, "componentType") == 5125;
+        assert_int_equal(wide, n > 65535);
+        size_t count, stride;
+        const uint8_t *bytes =
+            elements(&g, number(p, "indices"), wide ? 4 : 2, &count, &stride);
+        assert_int_equal(index_at(bytes, 2, wide), n - 1);
+        close_glb(&g);
+    }
+    unlink("test_city_h.glb");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_same_seed_same_city), cmocka_unit_test(test_geometry_is_sound),
+        cmocka_unit_test(test_many_prototypes),     cmocka_unit_test(test_walk),
+        cmocka_unit_test(test_bad_options),         cmocka_unit_test(test_wide_indices),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
