@@ -99,7 +99,7 @@ static void take_all(const calibration *c, int effort, prom_cost_sample *samples
             plan = scene_plan_at(&c->kit, (prom_shading)(i % PROM_SHADE_COUNT),
                                  (uint32_t)(i / PROM_SHADE_COUNT));
         prom_cost_sample sample = take_sample(c, empty ? NULL : &plan);
-        if (!samples[i].features.fixed || sample.ms < samples[i].ms) samples[i] = sample;
+        if (samples[i].features.fixed == 0 || sample.ms < samples[i].ms) samples[i] = sample;
         prom_progress_step(progress, 1);
     }
 }

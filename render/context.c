@@ -20,10 +20,6 @@ struct prom_context {
     bool software;
 };
 
-// EGL hands out one display per platform and device, shared by all contexts of the process, and
-// terminating it ends them all: the last context does it. (Mutable global; one thread.)
-static unsigned live_contexts;
-
 typedef enum preference { ANY_DEVICE, ONLY_HARDWARE, ONLY_SOFTWARE } preference;
 
 static bool has_word(const char *list, const char *word)
@@ -106,12 +102,13 @@ static bool make_current(prom_context *c, EGLDisplay display)
            eglMakeCurrent(display, c->surface, c->surface, c->gl);
 }
 
+// The display stays initialised: EGL hands out one per platform and device to the whole
+// process, so that terminating it would end the contexts of others too.
 static void leave(prom_context *c)
 {
     eglMakeCurrent(c->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     if (c->surface != EGL_NO_SURFACE) eglDestroySurface(c->display, c->surface);
     if (c->gl != EGL_NO_CONTEXT) eglDestroyContext(c->display, c->gl);
-    if (!live_contexts) eglTerminate(c->display);
 }
 
 // A context on a display, or NULL if it has no GL 4.5 core or is not the wanted kind of device.
@@ -203,7 +200,6 @@ prom_context *prom_context_create_headless(prom_error *error)
                   wanted == ANY_DEVICE ? "" : " or unset PROM_GL_DEVICE");
         return NULL;
     }
-    live_contexts++;
     if (wants_gl_debug()) listen_to_gl();
     prom_log(PROM_LOG_DEBUG, "GL device: %s, OpenGL %s", context->renderer, context->version);
     return context;
@@ -212,7 +208,6 @@ prom_context *prom_context_create_headless(prom_error *error)
 void prom_context_destroy(prom_context *context)
 {
     if (!context) return;
-    live_contexts--;
     leave(context);
     prom_free((char *)context->renderer);
     prom_free((char *)context->version);

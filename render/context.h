@@ -19,8 +19,8 @@ const char *prom_context_version(const prom_context *context);
 // A rasteriser on the CPU (llvmpipe, softpipe, SwiftShader), by renderer string.
 bool prom_context_is_software(const prom_context *context);
 
-// An off-screen picture: sRGB8 colour with alpha, 32-bit float depth (reverse z) and, if asked
-// for, one R32UI id per pixel (PROM_NONE where nothing was drawn).
+// An off-screen picture: RGBA8 colour, sRGB-encoded, 32-bit float depth (reverse z) and, if
+// asked for, one R32UI id per pixel (PROM_NONE where nothing was drawn).
 typedef struct prom_target prom_target;
 
 prom_target *prom_target_create(uint32_t width, uint32_t height, bool with_ids,

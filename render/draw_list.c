@@ -131,7 +131,10 @@ static void fill_record(const prom_renderer *r, const prom_draw_item *item,
             out->rows[row][column] = item->basis[column * 3 + row];
         out->rows[row][3] = item->origin[row];
     }
-    for (int i = 0; i < 4; i++) out->color[i] = m ? m->base_color[i] : 1;
+    for (int i = 0; i < 4; i++)
+        out->color[i] = !m       ? 1
+                        : i == 3 ? m->base_color[i]
+                                 : prom_linear_to_srgb(m->base_color[i]);
     out->layers = t->layer | t->normal_layer << 16;
     out->flags = (item->flags & PROM_REP_UNLIT ? DRAW_UNLIT : 0) |
                  (entry->state.double_sided ? DRAW_DOUBLE_SIDED : 0) |

@@ -17,7 +17,7 @@ enum {
 
 typedef struct draw_record {
     float rows[3][4]; // placement relative to the eye
-    float color[4];   // of the material, linear
+    float color[4];   // of the material, sRGB-encoded
     uint32_t layers;  // low half: of the picture; high half: of its normals
     uint32_t flags;   // low half: DRAW_*; high half: alpha cutoff x 65535
     uint32_t id;

@@ -43,15 +43,18 @@ static GLuint make_vertex_array(void)
     return name;
 }
 
-static GLuint make_sampler(GLint wrap, bool anisotropic)
+// On software devices the nearest mip alone is read: blending two doubles the fetches.
+static GLuint make_sampler(GLint wrap, bool software)
 {
     GLuint name;
     glCreateSamplers(1, &name);
     glSamplerParameteri(name, GL_TEXTURE_WRAP_S, wrap);
     glSamplerParameteri(name, GL_TEXTURE_WRAP_T, wrap);
-    glSamplerParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    glSamplerParameteri(name, GL_TEXTURE_MIN_FILTER,
+                        software ? GL_LINEAR_MIPMAP_NEAREST : GL_LINEAR_MIPMAP_LINEAR);
     glSamplerParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    if (anisotropic && epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic"))
+    if (!software && wrap == GL_REPEAT &&
+        epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic"))
         glSamplerParameterf(name, GL_TEXTURE_MAX_ANISOTROPY_EXT, MAX_ANISOTROPY);
     return name;
 }
@@ -69,8 +72,8 @@ prom_renderer *prom_renderer_create(prom_context *context, prom_error *error)
     prom_renderer *r = prom_calloc(1, sizeof *r);
     r->context = context;
     r->vertex_array = make_vertex_array();
-    r->repeat = make_sampler(GL_REPEAT, !prom_context_is_software(context));
-    r->clamp = make_sampler(GL_CLAMP_TO_EDGE, false);
+    r->repeat = make_sampler(GL_REPEAT, prom_context_is_software(context));
+    r->clamp = make_sampler(GL_CLAMP_TO_EDGE, prom_context_is_software(context));
     prom_status status = programs_init(&r->programs, error);
     if (!status && !texture_store_init(&r->textures)) status = renderer_out_of_memory(error);
     if (!status) status = renderer_warm(r, error);

@@ -6,7 +6,7 @@
 //   prom_draw_list: reset, add items, then submit with a projection, any number of times
 //
 // Shading: Lambert sun plus hemisphere ambient, per vertex, from fixed lights (lighting.glsl),
-// in linear light, written to an sRGB target. Depth is reverse z, infinite far.
+// on encoded colours (see lighting.glsl). Depth is reverse z, infinite far.
 #ifndef PROM_RENDER_RENDERER_H
 #define PROM_RENDER_RENDERER_H
 
@@ -50,7 +50,7 @@ uint64_t prom_renderer_bytes(const prom_renderer *renderer);
 typedef enum prom_output {
     PROM_OUTPUT_LIT = 0, // the picture
     PROM_OUTPUT_ALBEDO,  // colour without light
-    PROM_OUTPUT_NORMAL,  // n/2 + 1/2, stored linear (the bytes read back are n)
+    PROM_OUTPUT_NORMAL,  // n/2 + 1/2, per component
     PROM_OUTPUT_TINT,    // the item's tint, lightly shaded: false colours
     PROM_OUTPUT_COUNT
 } prom_output;

@@ -158,8 +158,6 @@ static void set_common_state(const submission *s)
     glDepthMask(GL_TRUE);
     glDisable(GL_BLEND);
     glPolygonMode(GL_FRONT_AND_BACK, s->pass->wireframe ? GL_LINE : GL_FILL);
-    // Normals are data, not colours.
-    set_switch(GL_FRAMEBUFFER_SRGB, s->pass->output != PROM_OUTPUT_NORMAL);
     glBindSampler(0, r->repeat);
     glBindSampler(1, r->clamp);
     glBindSampler(2, r->clamp);
@@ -200,7 +198,6 @@ void prom_draw_list_submit(prom_draw_list *list, prom_target *target, const prom
     }
     // Whatever else is drawn or cleared later finds ordinary state.
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    glEnable(GL_FRAMEBUFFER_SRGB);
     glBindVertexArray(0);
     count_stats(&s);
 }

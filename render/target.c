@@ -54,7 +54,7 @@ prom_target *prom_target_create(uint32_t width, uint32_t height, bool with_ids,
     t->width = width;
     t->height = height;
     t->has_ids = with_ids;
-    t->color = make_renderbuffer(GL_SRGB8_ALPHA8, width, height);
+    t->color = make_renderbuffer(GL_RGBA8, width, height);
     t->depth = make_renderbuffer(GL_DEPTH_COMPONENT32F, width, height);
     if (with_ids) t->ids = make_renderbuffer(GL_R32UI, width, height);
     t->framebuffer = make_framebuffer(t, with_ids);
@@ -81,14 +81,11 @@ void prom_target_destroy(prom_target *target)
 
 void prom_target_clear(prom_target *target, const uint8_t rgba[4])
 {
-    // Switching the encoding off for the clear would cost a pass of its own on tilers and
-    // software devices; clearing to linear values lets the device encode them instead.
-    const GLfloat color[4] = {prom_srgb8_to_linear(rgba[0]), prom_srgb8_to_linear(rgba[1]),
-                              prom_srgb8_to_linear(rgba[2]), (GLfloat)rgba[3] / 255.0f};
+    GLfloat color[4];
+    for (int i = 0; i < 4; i++) color[i] = (GLfloat)rgba[i] / 255.0f;
     const GLuint none[4] = {PROM_NONE, PROM_NONE, PROM_NONE, PROM_NONE};
     const GLfloat far = 0.0f; // reverse z
     glBindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
-    glEnable(GL_FRAMEBUFFER_SRGB);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glDepthMask(GL_TRUE);
     glClearBufferfv(GL_COLOR, 0, color);

@@ -31,8 +31,8 @@ static GLuint make_array(const texture_pool *pool, uint32_t layers)
     while (glGetError() != GL_NO_ERROR) {
     } // what is checked below is ours
     glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &name);
-    glTextureStorage3D(name, (GLsizei)pool->levels, pool->srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8,
-                       (GLsizei)pool->width, (GLsizei)pool->height, (GLsizei)layers);
+    glTextureStorage3D(name, (GLsizei)pool->levels, GL_RGBA8, (GLsizei)pool->width,
+                       (GLsizei)pool->height, (GLsizei)layers);
     if (glGetError() == GL_NO_ERROR) return name;
     glDeleteTextures(1, &name);
     return 0;
@@ -71,28 +71,27 @@ static bool pool_reserve(const texture_store *store, texture_pool *pool, uint32_
 }
 
 // The first pool of a class that can still hold `layers` layers; made if there is none.
-static uint32_t find_pool(texture_store *store, uint32_t width, uint32_t height, bool srgb,
+static uint32_t find_pool(texture_store *store, uint32_t width, uint32_t height,
                           uint32_t layers)
 {
     for (uint32_t i = 0; i < store->pools.count; i++) {
         const texture_pool *p = &store->pools.data[i];
-        if (p->width == width && p->height == height && p->srgb == srgb &&
+        if (p->width == width && p->height == height &&
             p->used + layers <= pool_limit(store, p))
             return i;
     }
     prom_array_push(&store->pools,
                     (texture_pool){.width = width,
                                    .height = height,
-                                   .levels = prom_texture_full_levels(width, height),
-                                   .srgb = srgb});
+                                   .levels = prom_texture_full_levels(width, height)});
     return (uint32_t)store->pools.count - 1;
 }
 
 // Takes `layers` consecutive layers.
-static bool take_layers(texture_store *store, uint32_t width, uint32_t height, bool srgb,
-                        uint32_t layers, uint32_t *pool, uint32_t *layer)
+static bool take_layers(texture_store *store, uint32_t width, uint32_t height, uint32_t layers,
+                        uint32_t *pool, uint32_t *layer)
 {
-    *pool = find_pool(store, width, height, srgb, layers);
+    *pool = find_pool(store, width, height, layers);
     texture_pool *p = &store->pools.data[*pool];
     if (!pool_reserve(store, p, layers, false)) return false;
     *layer = p->used;
@@ -127,9 +126,9 @@ static bool store_texture(texture_store *store, const prom_texture *texture, sto
     bool has_normals = texture->kind == PROM_TEXTURE_IMPOSTOR_ALBEDO;
     uint32_t colors = has_normals ? FACES : texture->layers;
     *s = (stored_texture){.kind = texture->kind};
-    if (!take_layers(store, texture->width, texture->height, true, colors, &s->pool, &s->layer))
+    if (!take_layers(store, texture->width, texture->height, colors, &s->pool, &s->layer))
         return false;
-    if (has_normals && !take_layers(store, texture->width, texture->height, false, FACES,
+    if (has_normals && !take_layers(store, texture->width, texture->height, FACES,
                                     &s->normal_pool, &s->normal_layer)) {
         drop_from(&store->pools.data[s->pool], s->layer);
         return false;
@@ -169,10 +168,10 @@ bool texture_store_reserve(texture_store *store, const prom_texture_info *infos,
     for (uint32_t i = 0; i < count; i++) {
         bool impostor = infos[i].kind != PROM_TEXTURE_COLOR;
         uint32_t colors = impostor ? FACES : 1;
-        uint32_t pool = find_pool(store, infos[i].width, infos[i].height, true, colors);
+        uint32_t pool = find_pool(store, infos[i].width, infos[i].height, colors);
         store->pools.data[pool].used += colors;
         if (infos[i].kind != PROM_TEXTURE_IMPOSTOR_ALBEDO) continue;
-        pool = find_pool(store, infos[i].width, infos[i].height, false, FACES);
+        pool = find_pool(store, infos[i].width, infos[i].height, FACES);
         store->pools.data[pool].used += FACES;
     }
     bool ok = true;

@@ -11,7 +11,6 @@
 
 typedef struct texture_pool {
     uint32_t width, height, levels;
-    bool srgb;               // colours; false: linear data (normals)
     GLuint name;             // GL_TEXTURE_2D_ARRAY, changes when the pool grows; 0 while empty
     uint32_t used, capacity; // layers
 } texture_pool;

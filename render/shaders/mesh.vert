@@ -9,7 +9,7 @@ layout(location = 3) in vec2 a_uv;
 layout(location = 4) in vec4 d_row0; // world relative to the eye = rows * (local, 1)
 layout(location = 5) in vec4 d_row1;
 layout(location = 6) in vec4 d_row2;
-layout(location = 7) in vec4 d_color; // linear
+layout(location = 7) in vec4 d_color; // sRGB-encoded
 layout(location = 8) in uvec4 d_info; // layers, flags and cutoff, id, tint
 
 layout(location = 0) uniform mat4 u_projection;
@@ -46,12 +46,6 @@ flat out vec3 v_color;
 flat out mat3 v_turn; // object-space normals to world space, up to length
 flat out vec2 v_relief; // x: layer of the face's normals, y: 1 lit, 0 not
 #endif
-
-vec3 srgb_to_linear(vec3 c)
-{
-    return mix(pow(c * (1.0 / 1.055) + (0.055 / 1.055), vec3(2.4)), c * (1.0 / 12.92),
-               lessThanEqual(c, vec3(0.04045)));
-}
 
 // Cofactors of the placement: the inverse transpose times the determinant, which turns normals.
 mat3 normal_turn(uint flags)
@@ -102,7 +96,7 @@ void main()
 #endif
 
 #if defined LOOK_TINT
-    vec3 tint = srgb_to_linear(unpackUnorm4x8(d_info.w).rgb) * (0.4 + 0.6 * light_of(normal).g);
+    vec3 tint = unpackUnorm4x8(d_info.w).rgb * (0.3 + 0.7 * light_of(normal).g);
 #if defined IMPOSTOR
     v_color = tint;
 #else
@@ -110,6 +104,6 @@ void main()
 #endif
 #elif !defined IMPOSTOR
     vec3 light = (flags & FLAG_UNLIT) != 0u ? vec3(1.0) : mix(vec3(1.0), light_of(normal), u_lit);
-    v_color = vec4(srgb_to_linear(a_color.rgb) * d_color.rgb * light, a_color.a * d_color.a);
+    v_color = vec4(a_color.rgb * d_color.rgb * light, a_color.a * d_color.a);
 #endif
 }
