@@ -40,6 +40,7 @@ static void gather(const prom_work *work, const prom_index_array *faces, float (
     const prom_index_array *all = &work->indices;
     prom_surface surface;
     prom_surface_init(&surface, v, (uint32_t)work->vertices.count, faces->data, faces->count);
+    uint32_t hint = PROM_NONE;
     size_t stride = all->count / 3 / MAX_SAMPLES + 1;
     for (size_t i = 0; i + 2 < all->count; i += stride * 3) {
         const uint32_t *t = all->data + i;
@@ -51,7 +52,8 @@ static void gather(const prom_work *work, const prom_index_array *faces, float (
             }
         prom_triangle_cross(v[t[0]].position, v[t[1]].position, v[t[2]].position, cross);
         float area = glm_vec3_norm(cross);
-        prom_nearest near = prom_surface_nearest(&surface, point, 0);
+        prom_nearest near = prom_surface_nearest(&surface, point, 0, hint);
+        hint = near.slot;
         for (int k = 0; k < 3; k++) {
             float *sum = sums[near.triangle[k]], weight = area * near.weights[k];
             for (int c = 0; c < 3; c++) sum[c] += rgb[c] * weight;

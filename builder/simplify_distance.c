@@ -98,35 +98,42 @@ static float triangle_distance2(const float p[3], const float *corner[3], float 
     return best;
 }
 
+// Takes the triangle at `slot` if it is nearer than best2; returns the better of both.
+static float try_triangle(const prom_surface *s, uint32_t slot, const float p[3], float best2,
+                          prom_nearest *nearest)
+{
+    const uint32_t *v = s->indices + (size_t)slot * 3;
+    const float *corner[3] = {s->vertices[v[0]].position, s->vertices[v[1]].position,
+                              s->vertices[v[2]].position};
+    float weights[3] = {1, 0, 0};
+    float d2 = triangle_distance2(p, corner, weights);
+    if (d2 >= best2) return best2;
+    nearest->slot = slot;
+    memcpy(nearest->triangle, v, sizeof nearest->triangle);
+    memcpy(nearest->weights, weights, sizeof weights);
+    return d2;
+}
+
 static float search_leaf(const prom_surface *s, uint32_t leaf, const float p[3], float best2,
                          prom_nearest *nearest)
 {
     uint32_t first = leaf * LEAF_TRIANGLES;
-    uint32_t end =
-        first + LEAF_TRIANGLES < s->triangles ? first + LEAF_TRIANGLES : s->triangles;
-    for (uint32_t t = first; t < end; t++) {
-        const uint32_t *v = s->indices + (size_t)t * 3;
-        const float *corner[3] = {s->vertices[v[0]].position, s->vertices[v[1]].position,
-                                  s->vertices[v[2]].position};
-        float weights[3] = {1, 0, 0};
-        float d2 = triangle_distance2(p, corner, weights);
-        if (d2 >= best2) continue;
-        best2 = d2;
-        memcpy(nearest->triangle, v, sizeof nearest->triangle);
-        memcpy(nearest->weights, weights, sizeof weights);
-    }
+    for (uint32_t t = first; t < first + LEAF_TRIANGLES && t < s->triangles; t++)
+        best2 = try_triangle(s, t, p, best2, nearest);
     return best2;
 }
 
-prom_nearest prom_surface_nearest(const prom_surface *s, const float p[3], float enough)
+prom_nearest prom_surface_nearest(const prom_surface *s, const float p[3], float enough,
+                                  uint32_t hint)
 {
-    prom_nearest nearest = {.distance = INFINITY};
+    prom_nearest nearest = {.distance = INFINITY, .slot = PROM_NONE};
     struct {
         uint32_t node;
         float d2;
     } stack[64];
     int depth = 0;
     float best2 = INFINITY, enough2 = enough * enough;
+    if (hint < s->triangles) best2 = try_triangle(s, hint, p, best2, &nearest);
     if (s->triangles) stack[depth++].node = 1, stack[0].d2 = 0;
     while (depth && best2 > enough2) {
         uint32_t node = stack[--depth].node;
@@ -138,8 +145,9 @@ prom_nearest prom_surface_nearest(const prom_surface *s, const float p[3], float
         float d[2] = {box_distance2(&s->boxes[2 * node], p),
                       box_distance2(&s->boxes[2 * node + 1], p)};
         uint32_t near = d[1] < d[0];
-        stack[depth].node = 2 * node + !near, stack[depth++].d2 = d[!near];
-        stack[depth].node = 2 * node + near, stack[depth++].d2 = d[near];
+        if (d[!near] < best2)
+            stack[depth].node = 2 * node + !near, stack[depth++].d2 = d[!near];
+        if (d[near] < best2) stack[depth].node = 2 * node + near, stack[depth++].d2 = d[near];
     }
     nearest.distance = sqrtf(best2);
     return nearest;
@@ -159,6 +167,7 @@ static float one_sided(const prom_work *work, const prom_index_array *faces,
 {
     const prom_vertex *v = work->vertices.data;
     size_t triangles = faces->count / 3;
+    uint32_t hint = PROM_NONE;
     // A vertex is asked once, and not at all where both have it.
     uint8_t *seen = prom_calloc(work->vertices.count, 1);
     for (size_t i = 0; i < others->count; i++) seen[others->data[i]] = 1;
@@ -167,12 +176,15 @@ static float one_sided(const prom_work *work, const prom_index_array *faces,
         const uint32_t *corner = faces->data + t * 3;
         float point[3];
         centroid(v, corner, point);
-        so_far = fmaxf(so_far, prom_surface_nearest(surface, point, so_far).distance);
+        prom_nearest near = prom_surface_nearest(surface, point, so_far, hint);
+        so_far = fmaxf(so_far, near.distance);
+        hint = near.slot;
         for (int k = 0; k < 3; k++) {
             if (seen[corner[k]]) continue;
             seen[corner[k]] = 1;
             const float *p = v[corner[k]].position;
-            so_far = fmaxf(so_far, prom_surface_nearest(surface, p, so_far).distance);
+            near = prom_surface_nearest(surface, p, so_far, hint);
+            so_far = fmaxf(so_far, near.distance);
         }
     }
     prom_free(seen);

@@ -16,6 +16,7 @@ typedef struct prom_surface {
 
 typedef struct prom_nearest {
     float distance;       // INFINITY for an empty surface
+    uint32_t slot;        // the triangle's place in the surface
     uint32_t triangle[3]; // vertices
     float weights[3];     // barycentric
 } prom_nearest;
@@ -23,9 +24,11 @@ typedef struct prom_nearest {
 void prom_surface_init(prom_surface *surface, const prom_vertex *vertices, uint32_t count,
                        const uint32_t *indices, size_t index_count);
 void prom_surface_finish(prom_surface *surface);
-// The nearest point; the search may end early at any point within `enough`.
+// The nearest point; the search may end early at any point within `enough`. hint: the slot of a
+// triangle that may be near, such as the last answer's (PROM_NONE: none): it saves most of the
+// search where points come in a spatial order.
 prom_nearest prom_surface_nearest(const prom_surface *surface, const float point[3],
-                                  float enough);
+                                  float enough, uint32_t hint);
 
 // Greatest distance, both ways, between the front faces of the work's mesh and `faces`, over
 // vertices and triangle centroids, each way at most 16384 of them evenly picked: true at the
