@@ -3,7 +3,7 @@
 #include <math.h>
 
 // Sides of the textures, in texels: large enough that they are shrunk on nearly all items, as
-// textures in scenes are; where they are enlarged, a software device reads half as many texels.
+// textures in scenes are; enlarged ones cost less.
 #define MATERIAL_SIZE 1024u
 #define PICTURE_SIZE 256u
 #define MAX_TRIANGLES 400000u

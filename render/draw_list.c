@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-// The sort key, from the top: phase 2 bits, slice 3, state 37, depth 16 for what is drawn
-// opaque; phase 2, falling depth 32 for what is blended.
+// The sort key, from the top: phase 2 bits, slice 3, state 21 (and room), depth 16 for what is
+// drawn opaque; phase 2, falling depth 32 for what is blended.
 #define PHASE_SHIFT 62
 #define SLICE_SHIFT 59
 #define STATE_SHIFT 16
@@ -84,7 +84,6 @@ static draw_state impostor_state(const prom_renderer *r, const prom_draw_item *i
     return (draw_state){
         .pipeline = lit ? PIPELINE_IMPOSTOR_LIT : PIPELINE_IMPOSTOR_UNLIT,
         .pool = (uint16_t)t->pool,
-        .normal_pool = (uint16_t)(lit ? t->normal_pool : 0),
     };
 }
 
@@ -116,6 +115,7 @@ static draw_state state_of(const prom_renderer *r, const prom_draw_item *item,
 static void fill_record(const prom_renderer *r, const prom_draw_item *item,
                         const sort_entry *entry, draw_record *out)
 {
+    static const draw_color white = {{1, 1, 1, 1}};
     const prom_submesh *submesh = &r->meshes.submeshes.data[entry->submesh];
     const prom_material *m =
         item->texture == PROM_NONE ? material_of(r, submesh->material) : NULL;
@@ -131,11 +131,8 @@ static void fill_record(const prom_renderer *r, const prom_draw_item *item,
             out->rows[row][column] = item->basis[column * 3 + row];
         out->rows[row][3] = item->origin[row];
     }
-    for (int i = 0; i < 4; i++)
-        out->color[i] = !m       ? 1
-                        : i == 3 ? m->base_color[i]
-                                 : prom_linear_to_srgb(m->base_color[i]);
-    out->layers = t->layer | t->normal_layer << 16;
+    out->color = m ? r->colors.data[m - r->materials.data] : white;
+    out->layer = t->layer;
     out->flags = (item->flags & PROM_REP_UNLIT ? DRAW_UNLIT : 0) |
                  (entry->state.double_sided ? DRAW_DOUBLE_SIDED : 0) |
                  (entry->state.mirrored ? DRAW_MIRRORED : 0) |
@@ -182,8 +179,8 @@ static uint32_t depth_bits(float depth)
 
 static uint64_t state_bits(const draw_state *s)
 {
-    return (uint64_t)s->pipeline << 34 | (uint64_t)s->double_sided << 33 |
-           (uint64_t)s->mirrored << 32 | (uint64_t)s->pool << 16 | s->normal_pool;
+    return (uint64_t)s->pipeline << 18 | (uint64_t)s->double_sided << 17 |
+           (uint64_t)s->mirrored << 16 | s->pool;
 }
 
 static uint64_t key_of(const draw_state *s, const depth_slices *slices, float depth)

@@ -15,10 +15,15 @@ enum {
     DRAW_BACKGROUND = 8,
 };
 
+// Straight alpha.
+typedef struct draw_color {
+    float rgba[4];
+} draw_color;
+
 typedef struct draw_record {
     float rows[3][4]; // placement relative to the eye
-    float color[4];   // of the material, sRGB-encoded
-    uint32_t layers;  // low half: of the picture; high half: of its normals
+    draw_color color; // of the material, sRGB-encoded
+    uint32_t layer;   // of the texture, in its pool
     uint32_t flags;   // low half: DRAW_*; high half: alpha cutoff x 65535
     uint32_t id;
     uint8_t tint[4];

@@ -25,7 +25,7 @@ static GLuint make_vertex_array(void)
         {1, 4, GL_FLOAT, false, GL_FALSE, offsetof(draw_record, rows[1])},
         {1, 4, GL_FLOAT, false, GL_FALSE, offsetof(draw_record, rows[2])},
         {1, 4, GL_FLOAT, false, GL_FALSE, offsetof(draw_record, color)},
-        {1, 4, GL_UNSIGNED_INT, true, GL_FALSE, offsetof(draw_record, layers)},
+        {1, 4, GL_UNSIGNED_INT, true, GL_FALSE, offsetof(draw_record, layer)},
     };
     GLuint name;
     glCreateVertexArrays(1, &name);
@@ -91,6 +91,7 @@ void prom_renderer_destroy(prom_renderer *renderer)
     mesh_store_finish(&renderer->meshes);
     texture_store_finish(&renderer->textures);
     prom_array_finish(&renderer->materials);
+    prom_array_finish(&renderer->colors);
     glDeleteVertexArrays(1, &renderer->vertex_array);
     glDeleteSamplers(2, (GLuint[]){renderer->repeat, renderer->clamp});
     prom_free(renderer);
@@ -111,8 +112,15 @@ uint32_t prom_renderer_add_texture(prom_renderer *renderer, const prom_texture *
 void prom_renderer_set_materials(prom_renderer *renderer, const prom_material *materials,
                                  uint32_t count)
 {
-    renderer->materials.count = 0;
-    for (uint32_t i = 0; i < count; i++) prom_array_push(&renderer->materials, materials[i]);
+    renderer->materials.count = renderer->colors.count = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        draw_color color;
+        for (int k = 0; k < 3; k++)
+            color.rgba[k] = prom_linear_to_srgb(materials[i].base_color[k]);
+        color.rgba[3] = materials[i].base_color[3];
+        prom_array_push(&renderer->materials, materials[i]);
+        prom_array_push(&renderer->colors, color);
+    }
 }
 
 void prom_renderer_truncate(prom_renderer *renderer, uint32_t mesh_count,

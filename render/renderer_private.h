@@ -13,6 +13,7 @@ struct prom_renderer {
     mesh_store meshes;
     texture_store textures;
     PROM_ARRAY(prom_material) materials;
+    PROM_ARRAY(draw_color) colors; // base colours of the materials, sRGB-encoded
     programs programs;
     GLuint vertex_array;
     GLuint repeat, clamp; // samplers
@@ -37,7 +38,7 @@ typedef enum phase {
 typedef struct draw_state {
     uint8_t phase, pipeline;
     bool double_sided, mirrored;
-    uint16_t pool, normal_pool;
+    uint16_t pool;
 } draw_state;
 
 typedef struct draw_run {

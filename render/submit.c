@@ -56,21 +56,13 @@ static void use_program(const submission *s, pipeline p)
     glUniform1f(UNIFORM_LIT, s->pass->output == PROM_OUTPUT_ALBEDO ? 0.0f : 1.0f);
 }
 
-static void use_textures(const submission *s, const draw_state *state)
+// Unit 0 repeats, unit 1 ends at the edge.
+static void use_texture(const submission *s, const draw_state *state)
 {
-    const texture_pool *pools = s->renderer->textures.pools.data;
-    switch (state->pipeline) {
-    case PIPELINE_PLAIN:
-        break;
-    case PIPELINE_IMPOSTOR_LIT:
-        glBindTextureUnit(2, pools[state->normal_pool].name);
-        // fall through
-    case PIPELINE_IMPOSTOR_UNLIT:
-        glBindTextureUnit(1, pools[state->pool].name);
-        break;
-    default:
-        glBindTextureUnit(0, pools[state->pool].name);
-    }
+    bool picture =
+        state->pipeline == PIPELINE_IMPOSTOR_LIT || state->pipeline == PIPELINE_IMPOSTOR_UNLIT;
+    if (state->pipeline != PIPELINE_PLAIN)
+        glBindTextureUnit(picture, s->renderer->textures.pools.data[state->pool].name);
 }
 
 static void set_switch(GLenum what, bool on)
@@ -84,7 +76,7 @@ static void set_switch(GLenum what, bool on)
 static void draw_run_as(const submission *s, const draw_run *run, pipeline p)
 {
     use_program(s, p);
-    use_textures(s, &run->state);
+    use_texture(s, &run->state);
     set_switch(GL_CULL_FACE, !run->state.double_sided);
     glFrontFace(run->state.mirrored ? GL_CW : GL_CCW);
     glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT,
@@ -160,7 +152,6 @@ static void set_common_state(const submission *s)
     glPolygonMode(GL_FRONT_AND_BACK, s->pass->wireframe ? GL_LINE : GL_FILL);
     glBindSampler(0, r->repeat);
     glBindSampler(1, r->clamp);
-    glBindSampler(2, r->clamp);
     glVertexArrayVertexBuffer(r->vertex_array, 0, r->meshes.vertices.name, 0,
                               sizeof(prom_vertex));
     glVertexArrayVertexBuffer(r->vertex_array, 1, s->list->record_buffer.name, 0,

@@ -6,8 +6,8 @@
 
 // A pool grows by copying, so that for a moment it exists twice; larger sets get further pools.
 #define MAX_POOL_BYTES ((uint64_t)256 << 20)
-#define FACES 6
-#define WHITE_SIZE 8 // as many mips as other pictures have: one sampling variant for all
+#define MIN_POOL_LAYERS 12u // a texture of any kind must fit
+#define WHITE_SIZE 8        // as many mips as other pictures have: one sampling variant for all
 
 static uint64_t layer_bytes(uint32_t width, uint32_t height)
 {
@@ -21,7 +21,7 @@ static uint64_t layer_bytes(uint32_t width, uint32_t height)
 static uint32_t pool_limit(const texture_store *store, const texture_pool *pool)
 {
     uint64_t limit = MAX_POOL_BYTES / layer_bytes(pool->width, pool->height);
-    if (limit < 2 * FACES) limit = 2 * FACES;
+    if (limit < MIN_POOL_LAYERS) limit = MIN_POOL_LAYERS;
     return limit < store->max_layers ? (uint32_t)limit : store->max_layers;
 }
 
@@ -87,29 +87,16 @@ static uint32_t find_pool(texture_store *store, uint32_t width, uint32_t height,
     return (uint32_t)store->pools.count - 1;
 }
 
-// Takes `layers` consecutive layers.
-static bool take_layers(texture_store *store, uint32_t width, uint32_t height, uint32_t layers,
-                        uint32_t *pool, uint32_t *layer)
+// Uploads all layers of a texture, to `layer` and the following ones.
+static void upload(const texture_pool *pool, const prom_texture *texture, uint32_t layer)
 {
-    *pool = find_pool(store, width, height, layers);
-    texture_pool *p = &store->pools.data[*pool];
-    if (!pool_reserve(store, p, layers, false)) return false;
-    *layer = p->used;
-    p->used += layers;
-    return true;
-}
-
-// Uploads `layers` layers of a texture, from its layer `from`.
-static void upload(const texture_store *store, const prom_texture *texture, uint32_t from,
-                   uint32_t layers, uint32_t pool, uint32_t layer)
-{
-    GLuint name = store->pools.data[pool].name;
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     for (uint32_t level = 0; level < texture->levels; level++)
-        glTextureSubImage3D(
-            name, (GLint)level, 0, 0, (GLint)layer, (GLsizei)level_size(texture->width, level),
-            (GLsizei)level_size(texture->height, level), (GLsizei)layers, GL_RGBA,
-            GL_UNSIGNED_BYTE, texture->pixels + prom_texture_offset(texture, level, from));
+        glTextureSubImage3D(pool->name, (GLint)level, 0, 0, (GLint)layer,
+                            (GLsizei)level_size(texture->width, level),
+                            (GLsizei)level_size(texture->height, level),
+                            (GLsizei)texture->layers, GL_RGBA, GL_UNSIGNED_BYTE,
+                            texture->pixels + prom_texture_offset(texture, level, 0));
 }
 
 static void drop_from(texture_pool *pool, uint32_t layer)
@@ -123,18 +110,12 @@ static void drop_from(texture_pool *pool, uint32_t layer)
 
 static bool store_texture(texture_store *store, const prom_texture *texture, stored_texture *s)
 {
-    bool has_normals = texture->kind == PROM_TEXTURE_IMPOSTOR_ALBEDO;
-    uint32_t colors = has_normals ? FACES : texture->layers;
-    *s = (stored_texture){.kind = texture->kind};
-    if (!take_layers(store, texture->width, texture->height, colors, &s->pool, &s->layer))
-        return false;
-    if (has_normals && !take_layers(store, texture->width, texture->height, FACES,
-                                    &s->normal_pool, &s->normal_layer)) {
-        drop_from(&store->pools.data[s->pool], s->layer);
-        return false;
-    }
-    upload(store, texture, 0, colors, s->pool, s->layer);
-    if (has_normals) upload(store, texture, FACES, FACES, s->normal_pool, s->normal_layer);
+    uint32_t index = find_pool(store, texture->width, texture->height, texture->layers);
+    texture_pool *pool = &store->pools.data[index];
+    if (!pool_reserve(store, pool, texture->layers, false)) return false;
+    *s = (stored_texture){.kind = texture->kind, .pool = index, .layer = pool->used};
+    pool->used += texture->layers;
+    upload(pool, texture, s->layer);
     return true;
 }
 
@@ -166,13 +147,9 @@ bool texture_store_reserve(texture_store *store, const prom_texture_info *infos,
     uint32_t *before = prom_calloc(known, sizeof *before);
     for (size_t i = 0; i < known; i++) before[i] = store->pools.data[i].used;
     for (uint32_t i = 0; i < count; i++) {
-        bool impostor = infos[i].kind != PROM_TEXTURE_COLOR;
-        uint32_t colors = impostor ? FACES : 1;
-        uint32_t pool = find_pool(store, infos[i].width, infos[i].height, colors);
-        store->pools.data[pool].used += colors;
-        if (infos[i].kind != PROM_TEXTURE_IMPOSTOR_ALBEDO) continue;
-        pool = find_pool(store, infos[i].width, infos[i].height, FACES);
-        store->pools.data[pool].used += FACES;
+        uint32_t layers = prom_texture_kind_layers(infos[i].kind);
+        uint32_t pool = find_pool(store, infos[i].width, infos[i].height, layers);
+        store->pools.data[pool].used += layers;
     }
     bool ok = true;
     for (size_t i = 0; i < store->pools.count; i++) {
@@ -200,8 +177,6 @@ void texture_store_truncate(texture_store *store, uint32_t count)
     while (store->textures.count > count) {
         const stored_texture *s = &store->textures.data[--store->textures.count];
         drop_from(&store->pools.data[s->pool], s->layer);
-        if (s->kind == PROM_TEXTURE_IMPOSTOR_ALBEDO)
-            drop_from(&store->pools.data[s->normal_pool], s->normal_layer);
     }
 }
 

@@ -1,4 +1,4 @@
-// Textures on the device: array textures ("pools") by size and encoding, whose layers are
+// Textures on the device: array textures ("pools") by size, whose layers are
 // handed out in order. Private to render/.
 #ifndef PROM_RENDER_TEXTURE_STORE_H
 #define PROM_RENDER_TEXTURE_STORE_H
@@ -18,8 +18,7 @@ typedef struct texture_pool {
 // Where a texture's layers stand: consecutive in a pool.
 typedef struct stored_texture {
     uint32_t kind;
-    uint32_t pool, layer;
-    uint32_t normal_pool, normal_layer; // of PROM_TEXTURE_IMPOSTOR_ALBEDO, else 0
+    uint32_t pool, layer; // of the first
 } stored_texture;
 
 typedef struct texture_store {

@@ -32,6 +32,14 @@ static void albedo_is_the_colour_given(void **state)
         show(target, &item, &pass);
         assert_near(middle(), color, 1);
     }
+    // Base colours are linear.
+    prom_material material = {.base_color = {0.5f, 0.1f, 0.02f, 0}, .texture = PROM_NONE};
+    prom_renderer_set_materials(fix.renderer, &material, 1);
+    prom_draw_item item = item_at(add_square(white, 0), 0, 0, 0, 1);
+    show(target, &item, &pass);
+    const uint8_t encoded[4] = {prom_linear_to_srgb8(0.5f), prom_linear_to_srgb8(0.1f),
+                                prom_linear_to_srgb8(0.02f), 255};
+    assert_near(middle(), encoded, 1);
     prom_target_destroy(target);
 }
 

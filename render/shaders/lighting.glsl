@@ -16,5 +16,6 @@ vec3 light_of(vec3 normal)
     float up = normal.y * 0.5 + 0.5;
     vec3 linear = mix(ground_ambient, sky_ambient, up) +
                   sun_color * max(dot(normal, sun_direction), 0.0);
-    return pow(linear, vec3(1.0 / 2.2));
+    // pow(linear, 1 / 2.2) to within 0.003 on [0.1, 1], fitted; lit pictures need it per pixel.
+    return sqrt(linear) * ((0.1258 * linear - 0.2473) * linear + 1.1245);
 }

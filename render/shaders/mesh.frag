@@ -5,8 +5,7 @@
 #endif
 
 layout(binding = 0) uniform sampler2DArray u_material; // repeats
-layout(binding = 1) uniform sampler2DArray u_picture;  // of impostors
-layout(binding = 2) uniform sampler2DArray u_normals;
+layout(binding = 1) uniform sampler2DArray u_picture;  // of impostors: six faces, then their normals
 
 #if defined PIPELINE_BLENDED
 layout(location = 0, index = 0) out vec4 o_color; // premultiplied; alpha 1: drawn
@@ -35,7 +34,7 @@ flat in vec3 v_color;
 #endif
 #if defined PIPELINE_IMPOSTOR_LIT
 flat in mat3 v_turn;
-flat in vec2 v_relief;
+flat in float v_lit;
 #endif
 
 // The colour before the look; discards what is not there.
@@ -66,7 +65,7 @@ vec4 surface()
 #if defined PIPELINE_IMPOSTOR_LIT
 vec3 pictured_normal()
 {
-    vec3 texel = texture(u_normals, vec3(v_uv.xy, v_relief.x)).xyz * 2.0 - 1.0;
+    vec3 texel = texture(u_picture, v_uv + vec3(0.0, 0.0, 6.0)).xyz * 2.0 - 1.0;
     return normalize(v_turn * texel);
 }
 #endif
@@ -88,7 +87,7 @@ void main()
     o_color = vec4(v_color, 1.0);
 #elif defined PIPELINE_IMPOSTOR_LIT
     vec3 light = light_of(pictured_normal());
-    o_color = vec4(color.rgb * mix(vec3(1.0), light, v_relief.y), 1.0);
+    o_color = vec4(color.rgb * mix(vec3(1.0), light, v_lit), 1.0);
 #else
     o_color = vec4(color.rgb, 1.0);
 #endif

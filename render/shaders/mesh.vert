@@ -10,7 +10,7 @@ layout(location = 4) in vec4 d_row0; // world relative to the eye = rows * (loca
 layout(location = 5) in vec4 d_row1;
 layout(location = 6) in vec4 d_row2;
 layout(location = 7) in vec4 d_color; // sRGB-encoded
-layout(location = 8) in uvec4 d_info; // layers, flags and cutoff, id, tint
+layout(location = 8) in uvec4 d_info; // layer, flags and cutoff, id, tint
 
 layout(location = 0) uniform mat4 u_projection;
 layout(location = 1) uniform vec4 u_eye;  // w = 1: a point; w = 0: a direction towards the viewer
@@ -44,7 +44,7 @@ flat out vec3 v_color;
 #endif
 #if defined PIPELINE_IMPOSTOR_LIT
 flat out mat3 v_turn; // object-space normals to world space, up to length
-flat out vec2 v_relief; // x: layer of the face's normals, y: 1 lit, 0 not
+flat out float v_lit; // 1 lit, 0 not
 #endif
 
 // Cofactors of the placement: the inverse transpose times the determinant, which turns normals.
@@ -78,7 +78,7 @@ void main()
     v_id = d_info.z;
 #endif
 #if !defined PIPELINE_PLAIN
-    uint layer = d_info.x & 0xffffu;
+    uint layer = d_info.x;
 #if defined IMPOSTOR
     layer += uint(a_normal.w);
 #endif
@@ -92,7 +92,7 @@ void main()
 #endif
 #if defined PIPELINE_IMPOSTOR_LIT
     v_turn = turn;
-    v_relief = vec2(float((d_info.x >> 16) + uint(a_normal.w)), u_lit);
+    v_lit = u_lit;
 #endif
 
 #if defined LOOK_TINT
