@@ -6,7 +6,7 @@
 #include <stdarg.h>
 #include <strings.h>
 
-// No sane file nests deeper; assimp itself recurses.
+// Beyond this a file is taken for damaged (by taste).
 #define MAX_NODES (1u << 26)
 
 void prom_import_doing(prom_import *import, const char *format, ...)

@@ -69,7 +69,8 @@ static void a_missing_texture_is_a_neutral_color(void **state)
         const prom_material *m = &s.materials.data[s.meshes.data[i].submeshes[0].material];
         assert_int_equal(m->alpha_mode, PROM_ALPHA_OPAQUE);
         // A black colour beside a texture is white.
-        assert_float_equal(m->base_color[1], m->texture == PROM_NONE ? 0 : 1, 1e-6);
+        float green = m->texture == PROM_NONE ? 0 : 1;
+        assert_float_equal(m->base_color[1], green, 1e-6);
         assert_int_equal(s.meshes.data[i].index_count, 6);
     }
     prom_source_finish(&s);
