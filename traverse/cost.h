@@ -17,10 +17,10 @@ typedef struct prom_cost_model {
 } prom_cost_model;
 
 // Non-negative least squares with 1/T weights (relative errors). Fails with fewer samples than
-// coefficients (of features that occur at all) or a sample that is not finite. Sets every field:
-// errors are measured on samples that the fit had not seen where there are enough; shading kinds
-// without samples cost what textured pixels do; overdraw 1, margin 0.1 and an empty renderer are
-// for the caller to replace.
+// coefficients (of features that occur at all) or a sample that is not finite. Sets every
+// field: errors are measured on samples that the fit had not seen where there are enough;
+// shading kinds without samples cost what textured pixels do; overdraw 1, margin 0.1 and an
+// empty renderer are for the caller to replace.
 prom_status prom_cost_fit(const prom_cost_sample *samples, size_t count, prom_cost_model *model,
                           prom_error *error);
 double prom_cost_predict(const prom_cost_model *model, const prom_cost_features *features);

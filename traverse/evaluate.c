@@ -1,6 +1,7 @@
 #include "traverse/evaluate.h"
 
 #include "benefit/accuracy.h"
+#include "traverse/footprint.h"
 #include "traverse/view_private.h"
 
 #include <assert.h>
@@ -45,7 +46,8 @@ void prom_eval_finish(prom_eval *eval)
 
 // ---- top down: culling, appearance, pixels, options
 
-// Culls a node and notes how it appears; returns its in_view, 0 when culled.
+// Culls a node and notes how it appears, with the pixels that it would have by itself; returns
+// the part of it that is in view, 0 when culled.
 static float look_at(prom_eval *eval, uint32_t node, bool parent_inside)
 {
     const prom_model *m = eval->model;
@@ -68,20 +70,9 @@ static float look_at(prom_eval *eval, uint32_t node, bool parent_inside)
     n->size_px = a.size_px;
     n->dir = (uint8_t)a.dir;
     n->near_case = a.near_case;
-    return a.in_view;
-}
-
-// Pixels of a node that stands under no node with a footprint of its own.
-static void set_topmost_px(prom_eval *eval, uint32_t node, float in_view)
-{
-    const prom_model *m = eval->model;
-    prom_eval_node *n = &eval->nodes[node];
-    n->in_flow = !(n->near_case && m->child_count[node]);
-    if (!n->in_flow) return;
-    float screen = prom_view_screen_px(eval->selection->view);
-    float footprint = prom_footprint_px(m, m->prototype[node], n->dir, n->size_px);
-    n->px =
-        n->near_case ? fminf(footprint, screen) * in_view : fminf(footprint * in_view, screen);
+    float in_view;
+    n->px = prom_visible_px(view, m, node, &a, &in_view);
+    return in_view;
 }
 
 // The size that sets the accuracy. Beyond the measured sizes the projected error counts, and
@@ -117,6 +108,15 @@ static void add_options(prom_eval *eval, uint32_t node)
     n->option_count = eval->option_count - n->first_option;
 }
 
+// A node under none with pixels of its own keeps those that look_at gave it; a cluster that
+// holds the eye has none, and its children start for themselves.
+static void start_flow(prom_eval *eval, uint32_t node)
+{
+    prom_eval_node *n = &eval->nodes[node];
+    n->in_flow = !(n->near_case && eval->model->child_count[node]);
+    if (!n->in_flow) n->px = 0.0f;
+}
+
 static void expand(prom_eval *eval, uint32_t node)
 {
     const prom_model *m = eval->model;
@@ -132,7 +132,7 @@ static void expand(prom_eval *eval, uint32_t node)
         if (n->in_flow)
             child->px = eval->px[c], child->in_flow = true;
         else
-            set_topmost_px(eval, first + c, eval->in_view[c]);
+            start_flow(eval, first + c);
         eval->visited[eval->visited_count++] = first + c;
     }
 }
@@ -140,9 +140,9 @@ static void expand(prom_eval *eval, uint32_t node)
 static void walk_down(prom_eval *eval, prom_eval_open *open, void *user)
 {
     eval->visited_count = eval->option_count = 0;
-    float in_view = look_at(eval, 0, false);
+    look_at(eval, 0, false);
     if (eval->nodes[0].culled) return;
-    set_topmost_px(eval, 0, in_view);
+    start_flow(eval, 0);
     eval->visited[eval->visited_count++] = 0;
     for (uint32_t i = 0; i < eval->visited_count; i++) {
         uint32_t node = eval->visited[i];
@@ -165,18 +165,63 @@ bool prom_eval_open_visible(void *user, uint32_t node)
 
 // ---- bottom up: costs and cmin
 
-// Shaded pixels per footprint pixel: footprints that add up to more than the screen hide each
-// other.
-static double shaded_share(const prom_eval *eval)
+// Sum of the pixels of all nodes that stand for themselves: more than the screen where they
+// hide each other.
+static double sum_px(const prom_eval *eval)
 {
-    double sum = 0.0, screen = prom_view_screen_px(eval->selection->view);
+    double sum = 0.0;
     for (uint32_t i = 0; i < eval->visited_count; i++) {
         uint32_t node = eval->visited[i];
         uint32_t parent = eval->model->parent[node];
         bool topmost = parent == PROM_NONE || !eval->nodes[parent].in_flow;
         if (topmost && eval->nodes[node].in_flow) sum += eval->nodes[node].px;
     }
+    return sum;
+}
+
+// Shaded pixels per footprint pixel.
+static double shaded_share(double sum, double screen)
+{
     return sum > screen ? (screen + HIDDEN_PIXEL_COST * (sum - screen)) / sum : 1.0;
+}
+
+// The background layer is drawn whole, by its finest meshes, behind everything: where the tree
+// leaves the screen free, its pixels are shaded, each once.
+static double background_cost(const prom_eval *eval, double sum, double screen)
+{
+    const prom_model *m = eval->model;
+    const prom_view *view = eval->selection->view;
+    double hidden = fmin(sum, screen), px = screen - hidden + HIDDEN_PIXEL_COST * hidden;
+    double ms = 0.0, pixel_ms = 0.0;
+    uint32_t seen = 0;
+    for (uint32_t node = m->tree_count; node < m->node_count; node++) {
+        const prom_prototype *p = &m->prototypes[m->prototype[node]];
+        if (!p->rep_count) continue;
+        const prom_representation *rep = &m->reps[p->first_rep];
+        double geometry = prom_cost_of_rep(eval->selection->cost, rep, 0.0);
+        ms += geometry;
+        if (prom_view_cull(view, m->center[node], m->half[node]) == PROM_OUTSIDE) continue;
+        pixel_ms += prom_cost_of_rep(eval->selection->cost, rep, px) - geometry;
+        seen++;
+    }
+    return seen ? ms + pixel_ms / seen : ms;
+}
+
+static void set_costs(prom_eval *eval, uint32_t node, double share)
+{
+    const prom_selection *s = eval->selection;
+    const prom_eval_node *n = &eval->nodes[node];
+    float box_px = -1.0f;
+    for (uint32_t i = 0; i < n->option_count; i++) {
+        prom_option *o = &eval->options[n->first_option + i];
+        const prom_representation *rep = &eval->model->reps[o->rep];
+        float px = n->px;
+        if (rep->kind != PROM_REP_MESH) {
+            if (box_px < 0.0f) box_px = prom_box_px(s->view, eval->model, node, n->dir, px);
+            px = box_px;
+        }
+        o->cost = prom_cost_of_rep(s->cost, rep, px * share);
+    }
 }
 
 static void take_cheapest(prom_eval *eval, uint32_t node)
@@ -224,42 +269,21 @@ static void take_opening(prom_eval *eval, uint32_t node)
 static void walk_up(prom_eval *eval)
 {
     const prom_cost_model *cost = eval->selection->cost;
-    double share = shaded_share(eval);
+    double sum = sum_px(eval), screen = prom_view_screen_px(eval->selection->view);
+    double share = shaded_share(sum, screen);
+    eval->fixed_ms = cost->fixed_ms + background_cost(eval, sum, screen);
     for (uint32_t i = eval->visited_count; i-- > 0;) {
         uint32_t node = eval->visited[i];
-        prom_eval_node *n = &eval->nodes[node];
-        for (uint32_t o = 0; o < n->option_count; o++) {
-            prom_option *option = &eval->options[n->first_option + o];
-            option->cost =
-                prom_cost_of_rep(cost, &eval->model->reps[option->rep], n->px * share);
-        }
+        set_costs(eval, node, share);
         take_cheapest(eval, node);
-        if (n->expanded) take_opening(eval, node);
+        if (eval->nodes[node].expanded) take_opening(eval, node);
     }
-}
-
-// The background layer is drawn whole, by its finest meshes, behind everything: most of its
-// pixels are hidden, and it can fill the screen only once.
-static double background_cost(const prom_eval *eval)
-{
-    const prom_model *m = eval->model;
-    float screen = prom_view_screen_px(eval->selection->view);
-    double ms = 0.0;
-    for (uint32_t node = m->tree_count; node < m->node_count; node++) {
-        const prom_prototype *p = &m->prototypes[m->prototype[node]];
-        if (p->rep_count)
-            ms +=
-                prom_cost_of_rep(eval->selection->cost, &m->reps[p->first_rep],
-                                 HIDDEN_PIXEL_COST * screen / (m->node_count - m->tree_count));
-    }
-    return ms;
 }
 
 void prom_eval_run(prom_eval *eval, const prom_selection *selection, prom_eval_open *open,
                    void *user)
 {
     eval->selection = selection;
-    eval->fixed_ms = selection->cost->fixed_ms + background_cost(eval);
     walk_down(eval, open, user);
     walk_up(eval);
 }

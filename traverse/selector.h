@@ -38,9 +38,9 @@ prom_selector *prom_selector_create(const char *name, const prom_model *model,
 void prom_selector_destroy(prom_selector *selector);
 const prom_selector_class *prom_selector_class_of(const prom_selector *selector);
 // Fills *cut (its memory is reused; start with {0}, end with prom_cut_finish). Never allocates
-// once the cut has grown to its size. The fixed part of predicted_ms holds the background layer.
-// cut->cmin_ms is the cost of the cheapest cut of the nodes that the selector went over; `meta`,
-// which knows none, gives that of its initial cut.
+// once the cut has grown to its size. The fixed part of predicted_ms holds the background
+// layer. cut->cmin_ms is the cost of the cheapest cut of the nodes that the selector went over;
+// `meta`, which knows none, gives that of its initial cut.
 void prom_selector_run(prom_selector *selector, const prom_selection *selection, prom_cut *cut);
 
 // NULL if the cut holds exactly one entry on every root-to-leaf path whose leaf is in the

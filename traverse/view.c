@@ -116,7 +116,8 @@ static void box_corners(const prom_view *view, const float center[3], const floa
     }
 }
 
-static float share_in_view(const prom_view *view, const float center[3], const float half[3])
+static void look_at_rectangle(const prom_view *view, const float center[3], const float half[3],
+                              prom_appearance *appearance)
 {
     float half_w = 0.5f * (float)view->camera.width / view->f_px;
     float half_h = 0.5f * (float)view->camera.height / view->f_px;
@@ -128,13 +129,16 @@ static float share_in_view(const prom_view *view, const float center[3], const f
             if (!(i >> axis & 1))
                 add_edge(&r, corners[i], corners[i | 1 << axis], view->camera.z_near, half_w,
                          half_h);
-    float share = 1.0f;
+    float share = 1.0f, area = 1.0f;
     for (int k = 0; k < 2; k++) {
         float extent = r.max[k] - r.min[k];
         float overlap = fminf(r.max[k], 1.0f) - fmaxf(r.min[k], -1.0f);
-        if (extent > 1e-9f) share *= fmaxf(overlap, 0.0f) / extent;
+        if (!(overlap > 0.0f)) overlap = 0.0f;
+        if (extent > 1e-9f) share *= overlap / extent;
+        area *= 0.5f * overlap;
     }
-    return share > IN_VIEW_MIN ? fminf(share, 1.0f) : IN_VIEW_MIN;
+    appearance->in_view = share > IN_VIEW_MIN ? fminf(share, 1.0f) : IN_VIEW_MIN;
+    appearance->overlap_px = area * prom_view_screen_px(view);
 }
 
 // ---- appearance
@@ -174,12 +178,15 @@ void prom_view_appearance_culled(const prom_view *view, const prom_model *model,
     appearance->size_px = 2.0f * model->radius[node] * view->f_px /
                           fmaxf(appearance->distance, view->camera.z_near);
     appearance->dir = direction_bin(model, node, center);
-    appearance->in_view = cull == PROM_INSIDE ? 1.0f : share_in_view(view, center, half);
+    appearance->in_view = 1.0f;
+    appearance->overlap_px = prom_view_screen_px(view);
+    if (cull != PROM_INSIDE ||
+        appearance->nearest < PROM_EXTREME_NEAREST * appearance->distance)
+        look_at_rectangle(view, center, half, appearance);
 }
 
 void prom_view_appearance(const prom_view *view, const prom_model *model, uint32_t node,
                           prom_appearance *appearance)
 {
-    prom_cull cull = prom_view_cull(view, model->center[node], model->half[node]);
-    prom_view_appearance_culled(view, model, node, cull, appearance);
+    prom_view_appearance_culled(view, model, node, PROM_CROSSING, appearance);
 }

@@ -23,12 +23,13 @@ prom_cull prom_view_cull(const prom_view *view, const double center[3], const fl
 
 // How a node appears: sizes are those of its bounding sphere.
 typedef struct prom_appearance {
-    float distance; // eye to the sphere's centre
-    float nearest;  // eye to the nearest point of the box; 0 inside
-    float size_px;  // projected diameter at that distance: 2 * radius * f_px / distance
-    float in_view;  // part of its screen rectangle inside the viewport, (0,1]
-    uint32_t dir;   // direction bin, in the node's own frame
-    bool near_case; // holds the eye or crosses the near plane: only meshes, clusters open
+    float distance;   // eye to the sphere's centre
+    float nearest;    // eye to the nearest point of the box; 0 inside
+    float size_px;    // projected diameter at that distance: 2 * radius * f_px / distance
+    float in_view;    // part of its screen rectangle inside the viewport, (0,1]
+    float overlap_px; // pixels of the viewport that its screen rectangle covers
+    uint32_t dir;     // direction bin, in the node's own frame
+    bool near_case;   // holds the eye or crosses the near plane: only meshes, clusters open
 } prom_appearance;
 void prom_view_appearance(const prom_view *view, const prom_model *model, uint32_t node,
                           prom_appearance *appearance);
