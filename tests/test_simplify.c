@@ -361,6 +361,42 @@ static void hard_edges_do_not_stop_it(void **state)
     prom_mesh_finish(&out);
 }
 
+// A thin door before a wall costs little to eat up, but it must not go.
+static void notable_parts_do_not_vanish(void **state)
+{
+    (void)state;
+    prom_mesh field, door, mesh, out;
+    float error;
+    const float center[3] = {0.5f, 1.2f, 0.5f}, half[3] = {0.3f, 0.5f, 0.003f};
+    init_field(&field, 40, 0, false);
+    prom_mesh_init_box(&door, center, half, NULL);
+    uint32_t v = field.vertex_count, n = field.index_count;
+    prom_mesh_init(&mesh, v + door.vertex_count, n + door.index_count, 1);
+    memcpy(mesh.vertices, field.vertices, v * sizeof *mesh.vertices);
+    memcpy(mesh.vertices + v, door.vertices, door.vertex_count * sizeof *mesh.vertices);
+    memcpy(mesh.indices, field.indices, n * sizeof *mesh.indices);
+    for (uint32_t i = 0; i < door.index_count; i++) mesh.indices[n + i] = v + door.indices[i];
+    mesh.submeshes[0] = (prom_submesh){0, mesh.index_count, 0};
+    prom_simplify_options options = {.target_triangles = 80};
+    assert_true(prom_simplify(&mesh, &options, &out, &error));
+    assert_sound(&out);
+    assert_in_range(out.index_count / 3, 1, 90);
+    float face = 0;
+    for (uint32_t i = 0; i < out.index_count; i += 3) {
+        const float *p[3];
+        for (int k = 0; k < 3; k++) p[k] = out.vertices[out.indices[i + k]].position;
+        if (p[0][1] < 0.6f) continue;
+        face += fabsf((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) -
+                      (p[1][1] - p[0][1]) * (p[2][0] - p[0][0])) /
+                2;
+    }
+    assert_float_equal(face, 1.2f, 0.1f); // 0.6 x 1 on both sides
+    prom_mesh_finish(&field);
+    prom_mesh_finish(&door);
+    prom_mesh_finish(&mesh);
+    prom_mesh_finish(&out);
+}
+
 static void sloppy_reaches_its_target(void **state)
 {
     (void)state;
@@ -478,6 +514,7 @@ int main(void)
         cmocka_unit_test(foliage_keeps_its_area),
         cmocka_unit_test(two_sided_sheets_stay),
         cmocka_unit_test(hard_edges_do_not_stop_it),
+        cmocka_unit_test(notable_parts_do_not_vanish),
         cmocka_unit_test(sloppy_reaches_its_target),
         cmocka_unit_test(bad_meshes_are_safe),
         cmocka_unit_test(weld_merges),
