@@ -72,7 +72,8 @@ static prom_status open_scene(prom_import *import, prom_error *error)
         const char *why = aiGetErrorString(), *dot = extension(import->path);
         if (!why || !*why) why = "the loader gives no reason";
         if (strstr(why, "bad_alloc")) why = "the loader ran out of memory";
-        if (strstr(why, "No suitable reader")) why = "it is not of the format that its name says";
+        if (strstr(why, "No suitable reader"))
+            why = "it is not of the format that its name says";
         if (!aiIsExtensionSupported(*dot ? dot : "."))
             return prom_fail(error, PROM_ERR_INPUT,
                              "%s: is of no known scene format; give glTF, GLB, OBJ or PLY",

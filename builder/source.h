@@ -11,7 +11,7 @@
 
 // A decoded picture: sRGB RGBA8, first row on top, at most max_texture_px on a side.
 typedef struct prom_source_image {
-    char *name; // as the scene names it
+    char *name;             // as the scene names it
     uint32_t width, height; // 1x1 neutral grey when it was missing or broken
     uint8_t *rgba;
     bool missing;
@@ -20,9 +20,9 @@ typedef struct prom_source_image {
 // A node of the file's hierarchy; parents come before children.
 typedef struct prom_source_node {
     char *name;
-    uint32_t parent;     // PROM_NONE for the root
-    double local[16];    // column-major, to the parent
-    double world[16];    // the product up to the root
+    uint32_t parent;                 // PROM_NONE for the root
+    double local[16];                // column-major, to the parent
+    double world[16];                // the product up to the root
     uint32_t first_mesh, mesh_count; // range in mesh_refs
 } prom_source_node;
 
@@ -43,8 +43,9 @@ typedef struct prom_import_options {
     uint32_t time_s;         // processor time of the child; 0: 300
 } prom_import_options;
 
-// Reads a scene through assimp in a child process. Missing textures are warnings; a file without
-// triangles, a crash, a hang or a lack of memory in the loader is an error with the file's name.
+// Reads a scene through assimp in a child process. Missing textures are warnings; a file
+// without triangles, a crash, a hang or a lack of memory in the loader is an error with the
+// file's name.
 prom_status prom_source_import(const char *path, const prom_import_options *options,
                                prom_source *source, prom_error *error);
 void prom_source_finish(prom_source *source);
