@@ -126,7 +126,8 @@ void prom_cut_chunks(const prom_finder *finder, prom_face *faces, size_t count,
     double longest = 0, corner[3], edge;
     for (int k = 0; k < 3; k++) longest = fmax(longest, box.max[k] - box.min[k]);
     bool chosen = finder->options.chunk_size > 0;
-    double base = chosen ? finder->options.chunk_size : CHUNK_SHARE * finder->layout_diagonal;
+    double base =
+        chosen ? finder->options.chunk_size : CHUNK_SHARE * finder->scope->layout.diagonal;
     base = fmax(base, longest * 1e-6); // so that doubles can tell cells apart
     for (int k = 0; k < 3; k++) corner[k] = floor(box.min[k] / base) * base;
     for (edge = base; edge < longest + base;) edge *= 2;

@@ -87,7 +87,7 @@ static bool breaks_up(const prom_finder *finder, const prom_part *part)
 {
     uint32_t most = finder->options.max_triangles;
     bool heavy = part->triangles / PROM_ALONE_FACTOR > most;
-    if (finder->one_thing) return heavy;
+    if (finder->scope->one_thing) return heavy;
     if (part->item_count == 1) return heavy || finder->items.data[part->first_item].surface;
     if (part->triangles > most) return true;
     double widest = 0, diagonal = prom_wbox_diagonal(&part->bounds);
@@ -96,7 +96,7 @@ static bool breaks_up(const prom_finder *finder, const prom_part *part)
         if (item->surface || item->backdrop) return true;
         widest = fmax(widest, prom_wbox_diagonal(&item->bounds));
     }
-    return diagonal > SPRAWL_SHARE * finder->layout_diagonal && widest < diagonal / 2;
+    return diagonal > SPRAWL_SHARE * finder->scope->layout.diagonal && widest < diagonal / 2;
 }
 
 // One item for all of a part that stays whole; its pieces' faces stand together already.
@@ -182,6 +182,7 @@ static void make_gathered(pool *p)
 
 void prom_make_scope(prom_finder *finder, const prom_scope *scope)
 {
+    finder->scope = scope;
     finder->split = finder->gathered = 0;
     for (int blended = 0; blended < 2; blended++) {
         pool p = {.finder = finder, .blended = blended};

@@ -61,7 +61,8 @@ static bool fits(const gatherer *g, const speck *specks, size_t count, const pro
     size_t triangles = count_triangles(g, specks, count);
     size_t few = f->options.min_triangles;
     if (triangles > 2 * few) return false;
-    if (triangles > WORTHWHILE && prom_wbox_diagonal(centers) > WIDE_SHARE * f->layout_diagonal)
+    if (triangles > WORTHWHILE &&
+        prom_wbox_diagonal(centers) > WIDE_SHARE * f->scope->layout.diagonal)
         return false;
     return triangles <= few || count_materials(specks, count) <= MOST_MATERIALS;
 }

@@ -51,10 +51,11 @@ static void add_part(const prom_finder *finder, units *list, const prom_part *pa
         add_unit(list, &finder->items.data[part->first_item + i].bounds, votes, by);
 }
 
-static void add_scope(const prom_finder *finder, units *list, const prom_scope *scope)
+static void add_scope(const prom_finder *finder, units *list, const prom_scope *scope,
+                      bool all_members)
 {
     const prom_source_node *nodes = finder->source->nodes.data;
-    size_t members = scope->roots.count ? scope->roots.count : 1;
+    size_t members = all_members && scope->roots.count ? scope->roots.count : 1;
     double pieces = 0;
     for (uint32_t i = 0; i < scope->part_count; i++)
         pieces += finder->parts.data[scope->first_part + i].item_count;
@@ -153,14 +154,14 @@ static int by_value(const void *pa, const void *pb)
 }
 
 // Of a scene of few large parts, specks beside them must not be all.
-static double median_part(const prom_finder *finder)
+static double median_part(const prom_finder *finder, const prom_scope *scope)
 {
-    size_t n = finder->parts.count;
+    uint32_t n = scope->part_count;
     double *diagonals = prom_alloc(n, sizeof *diagonals);
-    for (size_t i = 0; i < n; i++)
-        diagonals[i] = prom_wbox_diagonal(&finder->parts.data[i].bounds);
+    for (uint32_t i = 0; i < n; i++)
+        diagonals[i] = prom_wbox_diagonal(&finder->parts.data[scope->first_part + i].bounds);
     qsort(diagonals, n, sizeof *diagonals, by_value);
-    double median = diagonals[(n - 1) / 2];
+    double median = n ? diagonals[(n - 1) / 2] : 0;
     prom_free(diagonals);
     return median;
 }
@@ -172,32 +173,37 @@ static size_t count_within(const units *list, double limit)
     return count;
 }
 
-static void find_core(prom_finder *finder, const units *list)
+static prom_layout find_core(const units *list)
 {
+    prom_layout layout = {.box = PROM_WBOX_EMPTY};
+    if (!list->count) return layout;
     measure m = {.list = list, .limit = INFINITY};
     for (int k = 0; k < 4; k++) m.keys[k] = sort_units(list, k);
-    finder->median_diagonal = median_by_votes(&m);
-    m.most = MEDIAN_WEIGHT * finder->median_diagonal;
-    size_t within = list->count;
-    finder->layout = core_box(&m);
+    layout.median = median_by_votes(&m);
+    m.most = MEDIAN_WEIGHT * layout.median;
+    layout.objects = list->count;
+    layout.box = core_box(&m);
     for (int round = 0; round < MOST_ROUNDS; round++) {
-        double limit = BACKDROP_FACTOR * prom_wbox_diagonal(&finder->layout);
+        double limit = BACKDROP_FACTOR * prom_wbox_diagonal(&layout.box);
         size_t now = count_within(list, limit);
-        if (now < LEAST_UNITS || now == within) break;
+        if (now < LEAST_UNITS || now == layout.objects) break;
         m.limit = limit;
-        within = now;
-        finder->layout = core_box(&m);
+        layout.objects = now;
+        layout.box = core_box(&m);
     }
-    finder->layout_diagonal = fmax(prom_wbox_diagonal(&finder->layout), median_part(finder));
+    layout.diagonal = prom_wbox_diagonal(&layout.box);
     for (int k = 0; k < 4; k++) prom_free(m.keys[k]);
+    return layout;
 }
 
-// A backdrop is always drawn in full, which heavy geometry cannot be.
+// A backdrop is one to the whole scene, and is always drawn in full, which heavy geometry
+// cannot be.
 bool prom_is_backdrop(const prom_finder *finder, const prom_wbox *bounds, uint32_t triangles)
 {
-    return finder->backdrops_possible &&
+    const prom_layout *layout = &finder->scopes.data[0].layout;
+    return layout->objects >= LEAST_UNITS &&
            triangles / HEAVY_FACTOR <= finder->options.max_triangles &&
-           prom_wbox_diagonal(bounds) > BACKDROP_FACTOR * finder->layout_diagonal;
+           prom_wbox_diagonal(bounds) > BACKDROP_FACTOR * layout->diagonal;
 }
 
 // A ring of hills or a painted skyline may come in pieces, or stand on one side: large things
@@ -205,35 +211,34 @@ bool prom_is_backdrop(const prom_finder *finder, const prom_wbox *bounds, uint32
 static bool is_skyline(const prom_finder *finder, const prom_item *item)
 {
     const prom_use *use = &finder->uses.data[finder->faces.data[item->first_face].use];
+    prom_wbox reach = finder->scopes.data[0].layout.box;
     double center[3];
     prom_wbox_center(&item->bounds, center);
     bool inside = true;
     for (int k = 0; k < 3; k += 2)
-        inside &= center[k] >= finder->layout.min[k] && center[k] <= finder->layout.max[k];
-    prom_wbox reach = finder->layout;
+        inside &= center[k] >= reach.min[k] && center[k] <= reach.max[k];
     prom_wbox_add(&reach, &use->bounds);
     return !inside && prom_is_backdrop(finder, &reach, item->face_count);
 }
 
-static void mark_items(prom_finder *finder)
+static void mark_item(prom_finder *finder, prom_item *item)
 {
-    double surface =
-        fmax(SURFACE_SHARE * finder->layout_diagonal, SURFACE_FACTOR * finder->median_diagonal);
-    for (size_t i = 0; i < finder->items.count; i++) {
-        prom_item *item = &finder->items.data[i];
-        bool large = prom_wbox_diagonal(&item->bounds) > surface;
-        item->backdrop = prom_is_backdrop(finder, &item->bounds, item->face_count) ||
-                         (large && is_skyline(finder, item));
-        item->surface = large && !item->backdrop && !finder->one_thing;
-    }
+    const prom_scope *scope = &finder->scopes.data[finder->parts.data[item->part].scope];
+    bool large =
+        prom_wbox_diagonal(&item->bounds) >
+        fmax(SURFACE_SHARE * scope->layout.diagonal, SURFACE_FACTOR * scope->layout.median);
+    item->backdrop = prom_is_backdrop(finder, &item->bounds, item->face_count) ||
+                     (large && is_skyline(finder, item));
+    item->surface = large && !item->backdrop && !scope->one_thing;
 }
 
-static bool is_one_thing(const prom_finder *finder)
+static bool is_one_thing(const prom_finder *finder, const prom_scope *scope)
 {
+    bool rest = scope->group_kind == PROM_NONE && finder->scopes.count > 1;
     uint64_t triangles = 0;
-    for (size_t i = 0; i < finder->parts.count; i++)
-        triangles += finder->parts.data[i].triangles;
-    return finder->scopes.count == 1 && finder->parts.count <= PROM_FEW_PARTS &&
+    for (uint32_t i = 0; i < scope->part_count; i++)
+        triangles += finder->parts.data[scope->first_part + i].triangles;
+    return !rest && scope->part_count <= PROM_FEW_PARTS &&
            triangles / PROM_ALONE_FACTOR <= finder->options.max_triangles;
 }
 
@@ -241,11 +246,17 @@ void prom_find_layout(prom_finder *finder)
 {
     units list = {0};
     for (size_t i = 0; i < finder->scopes.count; i++)
-        add_scope(finder, &list, &finder->scopes.data[i]);
-    find_core(finder, &list);
-    double limit = BACKDROP_FACTOR * finder->layout_diagonal;
-    finder->backdrops_possible = count_within(&list, limit) >= LEAST_UNITS;
+        add_scope(finder, &list, &finder->scopes.data[i], true);
+    for (size_t i = 0; i < finder->scopes.count; i++) {
+        prom_scope *scope = &finder->scopes.data[i];
+        if (i) {
+            list.count = 0;
+            add_scope(finder, &list, scope, false);
+        }
+        scope->layout = find_core(&list);
+        scope->layout.diagonal = fmax(scope->layout.diagonal, median_part(finder, scope));
+        scope->one_thing = is_one_thing(finder, scope);
+    }
     prom_array_finish(&list);
-    finder->one_thing = is_one_thing(finder);
-    mark_items(finder);
+    for (size_t i = 0; i < finder->items.count; i++) mark_item(finder, &finder->items.data[i]);
 }

@@ -59,10 +59,20 @@ typedef struct prom_item {
     bool surface, backdrop;
 } prom_item;
 
+// Where the better part of some objects is, and how large it and they are.
+typedef struct prom_layout {
+    prom_wbox box;
+    double diagonal; // of the box, or of the median part where that is longer
+    double median;   // diagonal of the median object
+    size_t objects;  // or pieces, that are not far larger than all of it
+} prom_layout;
+
 typedef struct prom_scope {
     uint32_t group_kind;        // PROM_NONE: outside all groups
     PROM_ARRAY(uint32_t) roots; // the members' root nodes; the first one is looked at
     uint32_t first_part, part_count;
+    prom_layout layout; // of the first member; for scope 0 of the whole scene
+    bool one_thing;     // see PROM_FEW_PARTS
 } prom_scope;
 
 typedef struct prom_finder {
@@ -76,11 +86,7 @@ typedef struct prom_finder {
     PROM_ARRAY(prom_use) uses;
     PROM_ARRAY(prom_face) faces;
     PROM_ARRAY(prom_item) items;
-    prom_wbox layout;        // of the better part of the objects
-    double layout_diagonal;  // or of the median part, where that is longer
-    double median_diagonal;  // of the objects
-    bool backdrops_possible; // there is enough beside them to tell
-    bool one_thing;          // see PROM_FEW_PARTS
+    const prom_scope *scope; // the one whose fates are decided
     uint32_t kind_count;
     uint32_t *kind_shape;  // 2 per kind: ordinary, backdrop; PROM_NONE until made
     uint32_t *node_name;   // offset into names, 0 until made
@@ -101,7 +107,7 @@ float prom_part_stretch(const prom_part *part, int axis);
 void prom_find_items(prom_finder *finder);
 
 // ---- layout
-// Fills layout and its diagonal and the median, and marks backdrop and surface items.
+// Finds the layouts of the scopes, and marks backdrop and surface items.
 void prom_find_layout(prom_finder *finder);
 bool prom_is_backdrop(const prom_finder *finder, const prom_wbox *bounds, uint32_t triangles);
 
