@@ -25,7 +25,8 @@ void prom_renderer_destroy(prom_renderer *renderer);
 
 // ---- the store
 
-// Uploads; the data may be freed afterwards. Ids count from 0 in call order.
+// Uploads; the data may be freed afterwards. Ids count from 0 in call order; PROM_NONE when the
+// device has no memory left.
 uint32_t prom_renderer_add_mesh(prom_renderer *renderer, const prom_mesh *mesh);
 uint32_t prom_renderer_add_texture(prom_renderer *renderer, const prom_texture *texture);
 // The materials that submeshes name; their textures are texture ids of this renderer.
@@ -37,8 +38,9 @@ void prom_renderer_truncate(prom_renderer *renderer, uint32_t mesh_count,
                             uint32_t texture_count);
 uint32_t prom_renderer_mesh_count(const prom_renderer *renderer);
 uint32_t prom_renderer_texture_count(const prom_renderer *renderer);
-// Everything of a model, so that the ids here equal those of the model. Fails with the
-// container's error.
+// Everything of a model in place of what the store held, so that the ids here equal those of
+// the model. Fails with the container's error, or PROM_ERR_UNSUPPORTED when the device has no
+// memory left; the store is then empty.
 prom_status prom_renderer_load(prom_renderer *renderer, prom_container *container,
                                const prom_model *model, prom_error *error);
 // Bytes of device memory that the store holds.
