@@ -15,33 +15,33 @@ typedef enum prom_layer {
 
 // Geometry shared by instances: the future prototype of a leaf. In its own frame.
 typedef struct prom_shape {
-    prom_mesh mesh;        // submeshes by material
+    prom_mesh mesh; // submeshes by material
     prom_layer layer;
-    bool lock_border;      // its open border meets a neighbour's: no level may move it
+    bool lock_border; // its open border meets a neighbour's: no level may move it
     prom_box bounds;
     uint32_t instances;
 } prom_shape;
 
 typedef struct prom_object {
     uint32_t shape;
-    uint32_t name;         // offset into names
-    uint32_t group;        // index into groups, or PROM_NONE
+    uint32_t name;  // offset into names
+    uint32_t group; // index into groups, or PROM_NONE
     prom_placement placement;
 } prom_object;
 
-// A repeated assembly: the source has several equal subtrees (same shapes, same placements up to
-// a translation); the tree builds one and instances the rest. Objects of the k-th member stand in
-// the same order as those of the first.
+// A repeated assembly: the source has several equal subtrees (same shapes, same placements up
+// to a translation); the tree builds one and instances the rest. Objects of the k-th member
+// stand in the same order as those of the first.
 typedef struct prom_group {
-    uint32_t kind;          // groups of one kind are equal up to translation
-    double origin[3];       // the translation
+    uint32_t kind;                       // groups of one kind are equal up to translation
+    double origin[3];                    // the translation
     uint32_t first_object, object_count; // objects of a group stand together
 } prom_group;
 
 typedef struct prom_object_options {
-    uint32_t max_triangles;    // larger objects are split; 0: 4096
-    uint32_t min_triangles;    // unique neighbours smaller than this are gathered; 0: 256
-    double chunk_size;         // edge of a surface chunk in scene units; 0: from the layout
+    uint32_t max_triangles; // larger objects are split; 0: 4096
+    uint32_t min_triangles; // unique neighbours smaller than this are gathered; 0: 256
+    double chunk_size;      // edge of a surface chunk in scene units; 0: from the layout
 } prom_object_options;
 
 typedef struct prom_objects {
@@ -50,14 +50,27 @@ typedef struct prom_objects {
     PROM_ARRAY(prom_group) groups;
     PROM_ARRAY(char) names; // starts with one zero: offset 0 is the empty name
     prom_box layout;        // bounds of all objects but the backdrop (world)
-    // What was found, for `info`.
+    // What was found, for `info`: source objects that were split, objects that came from
+    // gathering, objects by layer, objects that share their shape.
     uint32_t split, gathered, chunks, backdrops, blended, instanced;
 } prom_objects;
 
-// Steps: flatten the hierarchy; instances share a shape (a non-uniform scale beyond 1.05 makes a
-// shape of its own); find the layout and the backdrops (beyond 3 times it); blended submeshes
-// become objects of their own; large surfaces become locked chunks; large objects are split by
-// connected component and then space; tiny unique neighbours are gathered.
+// Steps: flatten the hierarchy; instances share a shape and are never cut or gathered (a
+// non-uniform scale beyond 1.05 makes a shape of its own); blended submeshes become objects of
+// their own; the others are looked at in connected pieces. Against the layout (where the better
+// part of the objects is) and the median object, pieces far beyond it are backdrops, large ones
+// surfaces, which become locked chunks. A part of more than max_triangles, or one that sprawls
+// over the scene, is split into its pieces; of these, the large ones are halved in space and
+// the tiny ones gathered with their neighbours, across source nodes.
+//
+// What is connected, or a scene of few triangles in few parts (a chair), stays whole up to 16
+// times max_triangles; a lone model beyond that is cut into chunks like a surface. A repeated
+// assembly is measured by itself: its first member is treated like a scene, the others repeat
+// it.
+//
+// NULL options: the defaults. PROM_ERR_INPUT when nothing in the scene has an extent,
+// PROM_ERR_USAGE for options that contradict each other; *objects is empty then. Nodes whose
+// matrix is not finite or that have no extent are left out with a warning.
 prom_status prom_objects_find(const prom_source *source, const prom_object_options *options,
                               prom_objects *objects, prom_error *error);
 void prom_objects_finish(prom_objects *objects);

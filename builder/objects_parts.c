@@ -230,5 +230,14 @@ prom_status prom_find_parts(prom_finder *finder, prom_error *error)
         s->part_count++;
     }
     number_kinds(finder);
+    uint64_t triangles = 0;
+    for (size_t i = 0; i < n; i++)
+        if (finder->parts.data[i].unique) triangles += finder->parts.data[i].triangles;
+    if (triangles > UINT32_MAX)
+        return prom_fail(
+            error, PROM_ERR_UNSUPPORTED,
+            "the scene has %llu triangles that are no instances; at most %u can be "
+            "built, split the scene",
+            (unsigned long long)triangles, UINT32_MAX);
     return PROM_OK;
 }

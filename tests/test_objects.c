@@ -408,7 +408,7 @@ static void ground_becomes_chunks_sky_backdrop(void **state)
     (void)state;
     prom_source s;
     source_init(&s);
-    uint32_t root = add_root(&s), n = 96;
+    uint32_t root = add_root(&s), n = 80;
     uint32_t box = add_box(&s, (float[3]){0, 1, 0}, 1, OPAQUE);
     uint32_t ground = add_field(&s, n, 60, OTHER);
     uint32_t sky = add_box(&s, (float[3]){0, 0, 0}, 600, OTHER);
