@@ -361,15 +361,21 @@ static void hard_edges_do_not_stop_it(void **state)
     prom_mesh_finish(&out);
 }
 
-// A thin door before a wall costs little to eat up, but it must not go.
+// Where the rest is rough, a thin door costs less to eat up than what is around it, but it must
+// not go.
 static void notable_parts_do_not_vanish(void **state)
 {
     (void)state;
     prom_mesh field, door, mesh, out;
     float error;
-    const float center[3] = {0.5f, 1.2f, 0.5f}, half[3] = {0.3f, 0.5f, 0.003f};
+    const float center[3] = {0.5f, 1.9f, 0.5f}, half[3] = {0.05f, 0.2f, 0.003f};
     init_field(&field, 40, 0, false);
+    for (uint32_t i = 0; i < field.vertex_count; i++) field.vertices[i].position[1] *= 4;
     prom_mesh_init_box(&door, center, half, NULL);
+    for (uint32_t i = 0; i < door.vertex_count; i++) {
+        memset(door.vertices[i].normal, 0, 4); // no seams that would hold it together
+        memset(door.vertices[i].uv, 0, sizeof door.vertices[i].uv);
+    }
     uint32_t v = field.vertex_count, n = field.index_count;
     prom_mesh_init(&mesh, v + door.vertex_count, n + door.index_count, 1);
     memcpy(mesh.vertices, field.vertices, v * sizeof *mesh.vertices);
@@ -377,7 +383,7 @@ static void notable_parts_do_not_vanish(void **state)
     memcpy(mesh.indices, field.indices, n * sizeof *mesh.indices);
     for (uint32_t i = 0; i < door.index_count; i++) mesh.indices[n + i] = v + door.indices[i];
     mesh.submeshes[0] = (prom_submesh){0, mesh.index_count, 0};
-    prom_simplify_options options = {.target_triangles = 80};
+    prom_simplify_options options = {.target_triangles = 50};
     assert_true(prom_simplify(&mesh, &options, &out, &error));
     assert_sound(&out);
     assert_in_range(out.index_count / 3, 1, 90);
@@ -385,12 +391,12 @@ static void notable_parts_do_not_vanish(void **state)
     for (uint32_t i = 0; i < out.index_count; i += 3) {
         const float *p[3];
         for (int k = 0; k < 3; k++) p[k] = out.vertices[out.indices[i + k]].position;
-        if (p[0][1] < 0.6f) continue;
+        if (p[0][1] < 1.6f) continue;
         face += fabsf((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) -
                       (p[1][1] - p[0][1]) * (p[2][0] - p[0][0])) /
                 2;
     }
-    assert_float_equal(face, 1.2f, 0.1f); // 0.6 x 1 on both sides
+    assert_float_equal(face, 0.08f, 0.01f); // 0.1 x 0.4 on both sides
     prom_mesh_finish(&field);
     prom_mesh_finish(&door);
     prom_mesh_finish(&mesh);
