@@ -54,7 +54,7 @@ static void drop_blended(baker *b)
     for (size_t i = 0; i < faces->count; i += 3) {
         uint32_t t[3];
         memcpy(t, faces->data + i, sizeof t);
-        const prom_material *m = b->materials[b->work.owners.data[t[0]] >> 1];
+        const prom_material *m = b->materials[prom_owner_submesh(b->work.owners.data[t[0]])];
         if (m && m->alpha_mode == PROM_ALPHA_BLEND) continue;
         memcpy(faces->data + n, t, sizeof t);
         n += 3;
@@ -71,7 +71,7 @@ static void color_vertices(baker *b)
     float(*sums)[4] = prom_calloc(b->work.vertices.count, sizeof *sums);
     for (size_t i = 0; i < faces->count; i += 3) {
         const uint32_t *t = faces->data + i;
-        const prom_sampler *s = &b->samplers[b->work.owners.data[t[0]] >> 1];
+        const prom_sampler *s = &b->samplers[prom_owner_submesh(b->work.owners.data[t[0]])];
         const float *uv[3] = {v[t[0]].uv, v[t[1]].uv, v[t[2]].uv};
         uint32_t level = prom_sampler_level(s, uv);
         float area = area_of(b, t);
@@ -96,7 +96,7 @@ static void color_vertices(baker *b)
 static float coverage_of(const baker *b, const uint32_t *t)
 {
     const prom_vertex *v = b->work.vertices.data;
-    const prom_sampler *s = &b->samplers[b->work.owners.data[t[0]] >> 1];
+    const prom_sampler *s = &b->samplers[prom_owner_submesh(b->work.owners.data[t[0]])];
     if (!s->masked) return 1;
     const float *uv[3] = {v[t[0]].uv, v[t[1]].uv, v[t[2]].uv};
     float alpha = (float)(v[t[0]].color[3] + v[t[1]].color[3] + v[t[2]].color[3]) / 765;
@@ -184,8 +184,10 @@ static void shrink_masked(baker *b)
 static void forget_materials(baker *b)
 {
     for (size_t i = 0; i < b->work.vertices.count; i++) {
-        const prom_material *m = b->materials[b->work.owners.data[i] >> 1];
-        b->work.owners.data[i] = (b->work.owners.data[i] & 1) || (m && m->double_sided);
+        const prom_material *m = b->materials[prom_owner_submesh(b->work.owners.data[i])];
+        uint32_t *owner = &b->work.owners.data[i];
+        *owner &= PROM_OWNERS - 1;
+        if (m && m->double_sided) *owner |= PROM_OWNER_BACK;
         prom_vertex *v = &b->work.vertices.data[i];
         v->uv[0] = v->uv[1] = 0;
         v->color[3] = 255;

@@ -32,7 +32,7 @@ static void add_triangle(prom_component *c, const prom_work *work, const uint32_
     if (!c->triangles) memcpy(c->origin, v[t[0]].position, sizeof c->origin);
     glm_vec3_sub((float *)v[t[0]].position, c->origin, from);
     c->volume += glm_vec3_dot(from, cross) / 6;
-    c->submesh = work->owners.data[t[0]] >> 1;
+    c->submesh = prom_owner_submesh(work->owners.data[t[0]]);
     c->triangles++;
     c->area += area;
     for (int a = 0; a < 3; a++) c->facing[a] += cross[a] / 2;

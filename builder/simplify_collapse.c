@@ -133,7 +133,7 @@ void prom_work_collapse(const prom_work *work, const prom_index_array *faces,
 static void sort_by_owner(const prom_work *work, const prom_index_array *faces, uint32_t *start,
                           uint32_t *sorted)
 {
-    uint32_t owners = work->submesh_count * 2;
+    uint32_t owners = work->submesh_count * PROM_OWNERS;
     memset(start, 0, ((size_t)owners + 1) * sizeof *start);
     for (size_t i = 0; i < faces->count; i += 3)
         start[work->owners.data[faces->data[i]] + 1] += 3;
@@ -168,14 +168,15 @@ static void sloppy_range(const prom_work *work, const uint32_t *faces, size_t co
 void prom_work_sloppy(const prom_work *work, const prom_index_array *faces, uint32_t target,
                       float max_error, prom_index_array *out, float *error)
 {
-    uint32_t owners = work->submesh_count * 2;
+    out->count = 0;
+    *error = 0;
+    if (!faces->count) return;
+    uint32_t owners = work->submesh_count * PROM_OWNERS;
     uint32_t *start = prom_alloc((size_t)owners + 1, sizeof *start);
     uint32_t *sorted = prom_alloc(faces->count, sizeof *sorted);
     uint32_t *reading = prom_alloc(work->base_count, sizeof *reading);
     sort_by_owner(work, faces, start, sorted);
     prom_read_vertices(work, PROM_READ_POSITION, reading);
-    out->count = 0;
-    *error = 0;
     for (uint32_t o = 0; o < owners; o++) {
         size_t count = start[o + 1] - start[o];
         size_t share = (size_t)((double)target * (double)count / (double)faces->count) * 3;

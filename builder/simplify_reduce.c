@@ -30,10 +30,10 @@ static void restore_vanished(const prom_work *work, prom_index_array *out)
     float *largest = prom_calloc(submeshes, sizeof *largest);
     size_t *at = prom_alloc(submeshes, sizeof *at);
     for (size_t i = 0; i < out->count; i += 3)
-        present[work->owners.data[out->data[i]] >> 1] = 1;
+        present[prom_owner_submesh(work->owners.data[out->data[i]])] = 1;
     for (size_t i = 0; i < work->indices.count; i += 3) {
         const uint32_t *t = work->indices.data + i;
-        uint32_t s = work->owners.data[t[0]] >> 1;
+        uint32_t s = prom_owner_submesh(work->owners.data[t[0]]);
         if (present[s]) continue;
         float area = triangle_area(work, t);
         if (area > largest[s]) largest[s] = area, at[s] = i;

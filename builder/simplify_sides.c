@@ -53,6 +53,18 @@ static uint32_t root(uint32_t *parent, uint32_t i)
     return i;
 }
 
+// Whether a triangle and its back side have the same normals, on the whole.
+static bool alike(const prom_work *work, uint32_t t, uint32_t u)
+{
+    int sums[2][3] = {{0}};
+    for (uint32_t k = 0; k < 3; k++)
+        for (int a = 0; a < 3; a++) {
+            sums[0][a] += work->vertices.data[work->indices.data[t * 3 + k]].normal[a];
+            sums[1][a] += work->vertices.data[work->indices.data[u * 3 + k]].normal[a];
+        }
+    return sums[0][0] * sums[1][0] + sums[0][1] * sums[1][1] + sums[0][2] * sums[1][2] > 0;
+}
+
 void prom_work_mark_sides(const prom_work *work, uint8_t *marks)
 {
     uint32_t triangles = (uint32_t)(work->indices.count / 3);
@@ -78,10 +90,10 @@ void prom_work_mark_sides(const prom_work *work, uint8_t *marks)
     for (uint32_t t = 0; t < triangles; t++) {
         if (back[t] == PROM_NONE) continue;
         uint32_t r = root(parent, work->place.data[work->indices.data[t * 3]]);
-        // Fronts and backs are both counted in the total.
-        if (backs[r] * 4 < total[r]) continue;
+        // Nine fronts of ten; fronts and backs are both counted in the total.
+        if (backs[r] * (uint64_t)19 < total[r] * (uint64_t)9) continue;
         marks[t] = PROM_SIDE_DROP;
-        marks[back[t]] = PROM_SIDE_DOUBLE;
+        marks[back[t]] = alike(work, t, back[t]) ? PROM_SIDE_DOUBLE_LIKE : PROM_SIDE_DOUBLE;
     }
     prom_free(back);
     prom_free(parent);

@@ -70,7 +70,8 @@ static void gather_corners(const prom_mesh *mesh, corner_key **keys, uint32_t *c
                    t[2] < mesh->vertex_count);
             const prom_vertex *v = mesh->vertices;
             if (!usable(v[t[0]].position, v[t[1]].position, v[t[2]].position)) continue;
-            for (int k = 0; k < 3; k++) out[n++] = (corner_key){normalised(&v[t[k]]), s * 2};
+            for (int k = 0; k < 3; k++)
+                out[n++] = (corner_key){normalised(&v[t[k]]), s * PROM_OWNERS};
         }
     }
     *keys = out;
@@ -101,7 +102,7 @@ static void find_places(prom_work *work)
     place_key *keys = prom_alloc(n, sizeof *keys);
     for (uint32_t i = 0; i < n; i++) {
         memcpy(keys[i].position, work->vertices.data[i].position, sizeof keys[i].position);
-        keys[i].owner = work->owners.data[i] >> 1;
+        keys[i].owner = prom_owner_submesh(work->owners.data[i]);
     }
     prom_array_reserve(&work->place, n);
     work->place.count = n;
@@ -109,34 +110,44 @@ static void find_places(prom_work *work)
     prom_free(keys);
 }
 
+// The vertex for triangles with the given bits of an owner: itself, or a copy made once.
+static uint32_t clone_for(prom_work *work, uint32_t *clones, uint32_t vertex, uint32_t bits)
+{
+    if (!bits) return vertex;
+    uint32_t *clone = &clones[(size_t)vertex * PROM_OWNERS + bits];
+    if (*clone != PROM_NONE) return *clone;
+    *clone = (uint32_t)work->vertices.count;
+    prom_vertex copy = work->vertices.data[vertex];
+    uint32_t owner = work->owners.data[vertex] | bits, place = work->place.data[vertex];
+    prom_array_push(&work->vertices, copy);
+    prom_array_push(&work->owners, owner);
+    prom_array_push(&work->place, place);
+    return *clone;
+}
+
 // Gives triangles with a back side vertices of their own and removes the dropped ones.
 static void apply_marks(prom_work *work, const uint8_t *marks)
 {
-    uint32_t base = (uint32_t)work->vertices.count;
-    uint32_t triangles = (uint32_t)(work->indices.count / 3), n = 0;
-    uint32_t *clone = prom_alloc(base, sizeof *clone);
-    memset(clone, 0xff, (size_t)base * sizeof *clone);
+    static const uint32_t bits_of[] = {
+        [PROM_SIDE_KEEP] = 0,
+        [PROM_SIDE_DOUBLE] = PROM_OWNER_BACK,
+        [PROM_SIDE_DOUBLE_LIKE] = PROM_OWNER_BACK | PROM_OWNER_LIKE,
+    };
+    size_t slots = work->vertices.count * PROM_OWNERS, n = 0;
+    uint32_t triangles = (uint32_t)(work->indices.count / 3);
+    uint32_t *clones = prom_alloc(slots, sizeof *clones);
+    memset(clones, 0xff, slots * sizeof *clones);
     work->triangles = 0;
     for (uint32_t t = 0; t < triangles; t++) {
         if (marks[t] == PROM_SIDE_DROP) continue;
-        work->triangles += marks[t] == PROM_SIDE_DOUBLE ? 2 : 1;
+        work->triangles += marks[t] == PROM_SIDE_KEEP ? 1 : 2;
         for (uint32_t k = 0; k < 3; k++) {
             uint32_t v = work->indices.data[t * 3 + k];
-            if (marks[t] == PROM_SIDE_DOUBLE) {
-                if (clone[v] == PROM_NONE) {
-                    clone[v] = (uint32_t)work->vertices.count;
-                    prom_vertex copy = work->vertices.data[v];
-                    prom_array_push(&work->vertices, copy);
-                    prom_array_push(&work->owners, work->owners.data[v] | 1);
-                    prom_array_push(&work->place, work->place.data[v]);
-                }
-                v = clone[v];
-            }
-            work->indices.data[n++] = v;
+            work->indices.data[n++] = clone_for(work, clones, v, bits_of[marks[t]]);
         }
     }
     work->indices.count = n;
-    prom_free(clone);
+    prom_free(clones);
 }
 
 void prom_work_init(prom_work *work, const prom_mesh *mesh)
@@ -181,7 +192,7 @@ uint32_t prom_work_count(const prom_work *work, const prom_index_array *faces)
 {
     uint32_t n = 0;
     for (size_t i = 0; i < faces->count; i += 3)
-        n += 1 + (work->owners.data[faces->data[i]] & 1);
+        n += 1 + (work->owners.data[faces->data[i]] & PROM_OWNER_BACK);
     return n;
 }
 
@@ -193,6 +204,7 @@ typedef struct emitter {
 
 static uint32_t emit_vertex(emitter *e, uint32_t vertex, bool back)
 {
+    if (e->work->owners.data[vertex] & PROM_OWNER_LIKE) back = false;
     uint32_t *id = &e->ids[(size_t)vertex * 2 + back];
     if (*id != PROM_NONE) return *id;
     *id = e->out->vertex_count++;
@@ -216,10 +228,10 @@ void prom_work_emit(const prom_work *work, const prom_index_array *faces, prom_m
         uint32_t first = out->index_count;
         for (size_t i = 0; i < faces->count; i += 3) {
             const uint32_t *t = faces->data + i;
-            if (work->owners.data[t[0]] >> 1 != s) continue;
+            if (prom_owner_submesh(work->owners.data[t[0]]) != s) continue;
             for (int k = 0; k < 3; k++)
                 out->indices[out->index_count++] = emit_vertex(&e, t[k], false);
-            if (!(work->owners.data[t[0]] & 1)) continue;
+            if (!(work->owners.data[t[0]] & PROM_OWNER_BACK)) continue;
             for (int k = 2; k >= 0; k--)
                 out->indices[out->index_count++] = emit_vertex(&e, t[k], true);
         }

@@ -1,7 +1,8 @@
 // Private to simplification: a mesh taken apart for it.
 //
 // Every welded vertex has one owner: its submesh, and whether its triangles have a back side
-// (the same triangle once more with the opposite winding). Since no vertex has two owners, the
+// (the same triangle once more with the opposite winding) and whether that has the front's
+// normals. Since no vertex has two owners, the
 // whole index buffer can be simplified at once: borders between submeshes are then attribute
 // seams that move together and never crack, and an owner tells each remaining triangle's
 // material. Back sides are left out while simplifying (a folded sheet has no border that could
@@ -19,9 +20,20 @@
 typedef PROM_ARRAY(prom_vertex) prom_vertex_array;
 typedef PROM_ARRAY(uint32_t) prom_index_array;
 
+enum {
+    PROM_OWNER_BACK = 1, // has a back side
+    PROM_OWNER_LIKE = 2, // whose normals are the front's, not their opposites
+    PROM_OWNERS = 4,     // owners per submesh
+};
+
+static inline uint32_t prom_owner_submesh(uint32_t owner)
+{
+    return owner / PROM_OWNERS;
+}
+
 typedef struct prom_work {
     prom_vertex_array vertices; // the first base_count are the mesh's; scaled cards follow
-    prom_index_array owners;    // per vertex: submesh * 2 + has a back side
+    prom_index_array owners;    // per vertex: submesh * PROM_OWNERS + bits
     prom_index_array place;     // per vertex: the first vertex of this position and submesh
     prom_index_array indices;   // the mesh's front faces
     uint32_t base_count;

@@ -330,6 +330,36 @@ static void two_sided_sheets_stay(void **state)
     prom_mesh_finish(&out);
 }
 
+// Both sides of a leaf may share vertices, and so the normals: level 0 looks as it did.
+static void shared_sides_keep_their_normals(void **state)
+{
+    (void)state;
+    prom_mesh field, mesh, levels[3];
+    float errors[3];
+    init_field(&field, 12, 0, false);
+    uint32_t n = field.index_count;
+    prom_mesh_init(&mesh, field.vertex_count, n * 2, 1);
+    memcpy(mesh.vertices, field.vertices, field.vertex_count * sizeof *mesh.vertices);
+    for (uint32_t i = 0; i < n; i++) {
+        mesh.indices[i] = field.indices[i];
+        mesh.indices[n + i] = field.indices[i - i % 3 + 2 - i % 3];
+    }
+    mesh.submeshes[0] = (prom_submesh){0, n * 2, 0};
+    uint32_t count = prom_simplify_levels(&mesh, false, 50, 3, levels, errors);
+    assert_int_equal(count, 3);
+    assert_int_equal(levels[0].vertex_count, mesh.vertex_count);
+    for (uint32_t i = 0; i < count; i++) {
+        for (uint32_t v = 0; v < levels[i].vertex_count; v++)
+            assert_true(levels[i].vertices[v].normal[1] > 0);
+        edge_list open = open_edges(&levels[i]);
+        assert_int_equal(open.count, 0);
+        prom_array_finish(&open);
+        prom_mesh_finish(&levels[i]);
+    }
+    prom_mesh_finish(&field);
+    prom_mesh_finish(&mesh);
+}
+
 // Flat-shaded geometry has a vertex per face and corner; that must not stop simplification.
 static void hard_edges_do_not_stop_it(void **state)
 {
@@ -519,6 +549,7 @@ int main(void)
         cmocka_unit_test(errors_are_distances),
         cmocka_unit_test(foliage_keeps_its_area),
         cmocka_unit_test(two_sided_sheets_stay),
+        cmocka_unit_test(shared_sides_keep_their_normals),
         cmocka_unit_test(hard_edges_do_not_stop_it),
         cmocka_unit_test(notable_parts_do_not_vanish),
         cmocka_unit_test(sloppy_reaches_its_target),
