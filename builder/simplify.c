@@ -56,17 +56,31 @@ bool prom_simplify(const prom_mesh *mesh, const prom_simplify_options *options, 
     return ok;
 }
 
+static uint32_t triangles_of(const prom_mesh *mesh)
+{
+    return mesh->index_count / 3;
+}
+
+// One candidate for the last level: near the target, and not fallen to pieces.
+static bool candidate(prom_work *work, uint32_t target, bool sloppy, prom_mesh *out,
+                      float *error)
+{
+    prom_reduce_options options = {.target = target, .max_error = INFINITY, .sloppy = sloppy};
+    if (!reduce(work, &options, target + target / 2 + 1, out, error)) return false;
+    if (triangles_of(out) >= target / 2) return true;
+    prom_mesh_finish(out);
+    *out = (prom_mesh){0};
+    return false;
+}
+
 // The last, coarse level: vertex clustering or, where that comes nearer to the original with as
 // few triangles, edge collapse.
 static bool coarsest(prom_work *work, uint32_t target, prom_mesh *out, float *error)
 {
-    uint32_t below = target + target / 2 + 1;
-    prom_reduce_options options = {.target = target, .max_error = INFINITY};
     prom_mesh sloppy = {0};
     float sloppy_error;
-    bool collapsed = reduce(work, &options, below, out, error);
-    options.sloppy = true;
-    bool clustered = reduce(work, &options, below, &sloppy, &sloppy_error);
+    bool collapsed = candidate(work, target, false, out, error);
+    bool clustered = candidate(work, target, true, &sloppy, &sloppy_error);
     if (clustered && (!collapsed || sloppy_error < *error)) {
         prom_mesh_finish(out);
         *out = sloppy;
@@ -75,11 +89,6 @@ static bool coarsest(prom_work *work, uint32_t target, prom_mesh *out, float *er
     }
     prom_mesh_finish(&sloppy);
     return collapsed;
-}
-
-static uint32_t triangles_of(const prom_mesh *mesh)
-{
-    return mesh->index_count / 3;
 }
 
 uint32_t prom_simplify_levels(const prom_mesh *mesh, bool lock_border, uint32_t min_triangles,
