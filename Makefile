@@ -16,7 +16,7 @@ deps:
 	@scripts/install-deps.sh build
 
 build: deps
-	@scripts/build.sh release
+	@scripts/build.sh release promenade
 
 demo: build
 	@scripts/install-deps.sh demo
@@ -37,6 +37,7 @@ format:
 	git ls-files '*.c' '*.h' '*.cpp' | xargs clang-format -i
 
 tidy: build
+	@scripts/build.sh release
 	@scripts/install-deps.sh format
 	git ls-files '*.c' | xargs -P $(JOBS) -n 4 clang-tidy --quiet -p build/release
 

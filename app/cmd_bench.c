@@ -23,6 +23,7 @@ enum {
     KEY_CSV,
     KEY_KEEP,
     KEY_EVERY,
+    KEY_COLOURS,
     KEY_HOLES,
 };
 
@@ -34,6 +35,8 @@ static const struct argp_option options[] = {
     {"csv", KEY_CSV, "FILE", 0, "Write one row a frame", 1},
     {"keep-frames", KEY_KEEP, "DIR", 0, "Write pictures of frames into this folder", 1},
     {"every", KEY_EVERY, "K", 0, "With --keep-frames: of every K-th frame (30)", 1},
+    {"false-colours", KEY_COLOURS, NULL, 0,
+     "With --keep-frames: also colour each by kind of representation, as `shot` does", 1},
     {"check-holes", KEY_HOLES, "N", 0,
      "On N frames also draw full detail and report where it covers the background and the cut "
      "does not",
@@ -65,6 +68,9 @@ static error_t parse(int key, char *text, struct argp_state *state)
         break;
     case KEY_EVERY:
         o->loop.keep_every = (uint32_t)prom_option_whole(state, "--every", text, 1, 10000000);
+        break;
+    case KEY_COLOURS:
+        o->loop.keep_colours = true;
         break;
     case KEY_HOLES:
         o->loop.check_holes =

@@ -96,12 +96,23 @@ static void note_infeasible(const loop *l, prom_loop_result *result)
     if (needed > result->least_budget_ms) result->least_budget_ms = needed;
 }
 
-static prom_status keep_picture(loop *l, uint32_t frame, prom_error *error)
+static prom_status keep_picture(loop *l, uint32_t frame, const char *suffix, prom_error *error)
 {
-    char *path = prom_format("%s/frame-%05u.png", l->options->keep_folder, frame);
+    char *path = prom_format("%s/frame-%05u%s.png", l->options->keep_folder, frame, suffix);
     prom_status status = prom_session_write_png(l->session, path, error);
     prom_free(path);
     return status;
+}
+
+// The picture that the target holds, and the same cut again in false colours.
+static prom_status keep_pictures(loop *l, uint32_t frame, const prom_camera *camera,
+                                 prom_error *error)
+{
+    prom_frame_options tinted = {.output = PROM_OUTPUT_TINT};
+    prom_status status = keep_picture(l, frame, "", error);
+    if (status || !l->options->keep_colours) return status;
+    prom_session_draw(l->session, &l->cut, camera, &tinted);
+    return keep_picture(l, frame, "-colours", error);
 }
 
 // Whether frame i is one of `wanted` evenly spaced ones out of `frames`.
@@ -123,7 +134,7 @@ static prom_status between_frames(loop *l, uint32_t i, prom_error *error)
     prom_camera camera = l->session->camera;
     prom_path_pose(&l->session->path, i, &camera);
     if (keep) {
-        prom_status status = keep_picture(l, i, error);
+        prom_status status = keep_pictures(l, i, &camera, error);
         if (status) return status;
     }
     if (check) prom_holes_check(&l->holes, l->session, &camera, &l->cut);

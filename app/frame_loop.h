@@ -22,6 +22,7 @@ typedef struct prom_loop_options {
     double budget_ms, distance_scale;
     const char *keep_folder; // PNGs of every keep_every-th frame; NULL: none
     uint32_t keep_every;
+    bool keep_colours;    // and each of them again in false colours
     uint32_t check_holes; // frames to compare with `full`, evenly spaced; 0: none
 } prom_loop_options;
 

@@ -7,7 +7,7 @@ out=$2
 budget=33
 size=1280,720
 frames=300
-shots="60 300 540"
+shots="00050 00150 00250"
 selectors="full meta greedy"
 
 say() {
@@ -46,6 +46,7 @@ body { font: 16px/1.5 system-ui, sans-serif; max-width: 72rem; margin: 2rem auto
 table { border-collapse: collapse } td, th { padding: .2rem .8rem; text-align: right }
 td:first-child, th:first-child { text-align: left } tr + tr { border-top: 1px solid #ccc }
 .strip { display: grid; grid-template-columns: repeat(3, 1fr); gap: .5rem; margin: 1rem 0 }
+.two { grid-template-columns: repeat(2, 1fr) }
 figure { margin: 0 } img { width: 100%; display: block } figcaption { font-size: .85rem }
 pre { background: #f4f4f4; padding: 1rem; overflow: auto }
 </style>
@@ -63,22 +64,29 @@ HEAD
     for frame in $shots; do
         echo "<h2>Frame $frame</h2><div class=strip>"
         for selector in $selectors; do
-            picture "$selector-$frame.png" "$selector"
+            picture "$selector-frames/frame-$frame.png" "$selector"
         done
         for selector in $selectors; do
-            picture "$selector-$frame-colours.png" "$selector, by kind of representation"
+            picture "$selector-frames/frame-$frame-colours.png" "$selector, by kind"
         done
         echo "</div>"
     done
     cat << LEGEND
 <p>By kind: meshes of objects green (dark is finest), cluster meshes blue, average-colour boxes
-red, textured boxes orange. The pictures of <code>meta</code> and <code>greedy</code> above are
-chosen by prediction alone, without the correction that a running walk makes; the folders
-<a href="meta-frames">meta-frames</a>, <a href="greedy-frames">greedy-frames</a> and
-<a href="full-frames">full-frames</a> hold pictures from the walks, the <code>.csv</code> files
-every frame.</p>
-<h2>The model</h2><pre>
+red, textured boxes orange. More pictures of the walks are in <a href="full-frames">full-frames</a>,
+<a href="meta-frames">meta-frames</a> and <a href="greedy-frames">greedy-frames</a>; every frame's
+figures in <a href="full.csv">full.csv</a>, <a href="meta.csv">meta.csv</a> and
+<a href="greedy.csv">greedy.csv</a>.</p>
+<h2>One place, four ways</h2><div class="strip two">
 LEGEND
+    picture shot-full.png "full detail"
+    picture shot-wireframe.png "its edges"
+    picture shot-budget.png "greedy, $budget ms, by prediction alone"
+    picture shot-colours.png "by kind"
+    cat << MODEL
+</div>
+<h2>The model</h2><pre>
+MODEL
     escape < "$out/info.txt"
     echo "</pre></html>"
 }
@@ -94,21 +102,21 @@ for selector in $selectors; do
     rm -rf "$out/$selector-frames"
     "$program" bench "$out/city.prom" --path "$out/city.path" --selector "$selector" \
         --budget-ms "$budget" --resolution "$size" --frames "$frames" --check-holes 10 \
-        --keep-frames "$out/$selector-frames" --every 50 \
+        --keep-frames "$out/$selector-frames" --every 50 --false-colours \
         --report "$out/$selector.json" --csv "$out/$selector.csv"
 done
 say "pictures"
-for selector in $selectors; do
-    for frame in $shots; do
-        shot="--path $out/city.path --frame $frame --selector $selector --resolution $size"
-        # shellcheck disable=SC2086 # a list of options
-        "$program" shot "$out/city.prom" $shot --budget-ms "$budget" \
-            -o "$out/$selector-$frame.png"
-        # shellcheck disable=SC2086
-        "$program" shot "$out/city.prom" $shot --budget-ms "$budget" --false-colours \
-            -o "$out/$selector-$frame-colours.png"
-    done
-done
+# shot NAME OPTION...: a picture of the walk's frame 60.
+shot() {
+    name=$1
+    shift
+    "$program" shot "$out/city.prom" --path "$out/city.path" --frame 60 --resolution "$size" \
+        -o "$out/shot-$name.png" "$@"
+}
+shot full
+shot wireframe --wireframe
+shot budget --budget-ms "$budget"
+shot colours --budget-ms "$budget" --false-colours
 page > "$out/index.html.part"
 mv "$out/index.html.part" "$out/index.html"
 say "done: open $out/index.html"

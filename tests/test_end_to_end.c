@@ -174,7 +174,7 @@ static void bench_reports_every_selector(void **state)
         snprintf(arguments, sizeof arguments,
                  "bench city.prom --path city.path --selector %s --budget-ms 20 --frames 12 "
                  "--warmup 2 --check-holes 3 --report r.json --csv r.csv --keep-frames kept "
-                 "--every 6" SMALL,
+                 "--every 6 --false-colours" SMALL,
                  selectors[i]);
         expect(arguments, 0);
         json_t *report = json_load_file("r.json", 0, NULL);
@@ -182,7 +182,9 @@ static void bench_reports_every_selector(void **state)
         check_run(json_array_get(at(report, "runs"), 0), selectors[i]);
         json_decref(report);
         check_csv("r.csv");
-        const char *const pictures[] = {"frame-00000.png", "frame-00006.png", NULL};
+        const char *const pictures[] = {"frame-00000.png", "frame-00006.png",
+                                        "frame-00000-colours.png", "frame-00006-colours.png",
+                                        NULL};
         assert_int_equal(count_others("kept", pictures), 0);
         assert_true(size_of("kept/frame-00006.png") > 200);
     }
