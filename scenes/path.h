@@ -5,6 +5,7 @@
 
 #include "metaobj/base/status.h"
 #include "metaobj/camera.h"
+#include "metaobj/container.h"
 #include "metaobj/model.h"
 
 // Keys a second in the paths that are made here; a key is a frame.
@@ -36,5 +37,10 @@ void prom_path_pose(const prom_path *path, uint64_t frame, prom_camera *camera);
 // model of few objects. Deterministic. PROM_ERR_INPUT when the model has no object.
 prom_status prom_path_auto(const prom_model *model, uint32_t frames, prom_path *path,
                            prom_error *error);
+// The same from the model's geometry, which the container holds: over floors with headroom,
+// such as streets, past walls. Better wherever the ground is not flat or objects are no boxes;
+// takes a second or so.
+prom_status prom_path_auto_in(prom_container *container, const prom_model *model,
+                              uint32_t frames, prom_path *path, prom_error *error);
 
 #endif
