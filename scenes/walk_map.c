@@ -198,7 +198,7 @@ static void find_floors(prom_walk_map *map, span *spans, size_t count, double ey
         }
         // Of floors a little above one another the highest is the one to stand on.
         for (size_t k = i + 1; k < count && free && spans[k].high <= from; k++)
-            free = !spans[k].floor || spans[k].high <= y;
+            free = !spans[k].floor;
         if (!free) continue;
         prom_walk_floor f = {.y = y, .column = spans[i].column, .open = open};
         prom_array_push(&map->floors, f);
@@ -267,8 +267,8 @@ void prom_walk_map_point(const prom_walk_map *m, uint32_t floor, double point[3]
     point[2] = m->origin[1] + (f->column / m->columns + 0.5) * m->cell;
 }
 
-// Numbers the connected floors. Connection need not be mutual where floors lie close above one
-// another; it counts from either side, in the order of the floors.
+// Numbers the connected floors. Floors of a column are a head's height apart, so that
+// connection is mutual.
 static void find_components(prom_walk_map *m)
 {
     PROM_ARRAY(uint32_t) stack = {0};
