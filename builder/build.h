@@ -16,8 +16,8 @@ typedef struct prom_shape_build {
     prom_mesh levels[PROM_LEVELS_MAX];
     float errors[PROM_LEVELS_MAX];
     uint32_t level_count;
-    uint32_t first_mesh; // container and renderer id of level 0; the others follow
-    prom_mesh merge;     // a level with its materials baked to colours, for cluster meshes
+    uint32_t mesh_ids[PROM_LEVELS_MAX]; // container and renderer ids; PROM_NONE: not kept
+    prom_mesh merge; // a level with its materials baked to colours, for cluster meshes
     float merge_error;
 } prom_shape_build;
 
@@ -45,6 +45,7 @@ typedef struct prom_build_state {
     prom_prototype *prototypes;
     uint16_t (*coverage)[PROM_DIRS];
     PROM_ARRAY(prom_representation) reps;
+    uint32_t open_reps; // meshes whose gaps were too large to be kept
     PROM_ARRAY(struct prom_accuracy_row { uint8_t a[PROM_DIRS][PROM_SIZES]; }) accuracy;
     PROM_ARRAY(struct prom_share_row { uint16_t a[PROM_DIRS]; }) shares;
     PROM_ARRAY(prom_mesh_info) mesh_infos;
@@ -75,20 +76,23 @@ prom_status prom_stage_model(prom_build_state *b, prom_error *error);
 
 // ---- shared by the stages
 
-// Adds a mesh or texture to the container and the renderer, under the same id.
-prom_status prom_build_add_mesh(prom_build_state *b, const prom_mesh *mesh, uint32_t *id,
-                                prom_error *error);
+// Adds a texture to the container and the renderer, under the same id.
 prom_status prom_build_add_texture(prom_build_state *b, const prom_texture *texture,
                                    uint32_t *id, prom_error *error);
-// Appends a representation to prototype `p`, which must be the last one that got any; its
-// accuracy row starts as all 255. Returns the representation's index.
-uint32_t prom_build_add_rep(prom_build_state *b, uint32_t p, const prom_representation *rep);
-// A mesh representation with its features; not yet measured.
-prom_representation prom_build_mesh_rep(const prom_build_state *b, const prom_mesh *mesh,
-                                        uint32_t mesh_id, uint32_t level, float error);
-// Takes views of the subject set in the baker and compares them with the truth set in measure:
-// fills the accuracy row of `rep` and, for meshes, near_k.
-void prom_build_measure_rep(prom_build_state *b, uint32_t rep, float radius);
+// How a representation comes into the model.
+typedef enum prom_admission {
+    PROM_ADMIT_UNMEASURED, // as it is: accuracy 1, no views taken
+    PROM_ADMIT_TRUTH, // it is the object: coverage and the truth of what follows come from it
+    PROM_ADMIT_MEASURED, // kept if it is closed enough to be shown at some size
+} prom_admission;
+
+// Adds a representation to prototype `p`, which must be the last one that got any: uploads the
+// mesh (in the frame of the prototype), measures it, and if it is admitted writes it. `rep` has
+// kind, texture, flags, level, error; the rest is filled in. *mesh_id (NULL allowed) gets its
+// id, or PROM_NONE if it was not kept.
+prom_status prom_build_add_rep(prom_build_state *b, uint32_t p, const prom_mesh *mesh,
+                               const prom_representation *rep, prom_admission admission,
+                               uint32_t *mesh_id, prom_error *error);
 
 // Average-colour box and, if `textured`, textured box of the subject set in the baker (items
 // relative to the bounds' centre). lit: bake the light in (clusters). Each is added to

@@ -3,19 +3,14 @@
 
 #include "benefit/accuracy.h"
 
-prom_status prom_build_add_mesh(prom_build_state *b, const prom_mesh *mesh, uint32_t *id,
-                                prom_error *error)
-{
-    prom_status status = prom_writer_add_mesh(b->writer, mesh, id, error);
-    if (status) return status;
-    uint32_t device_id = prom_renderer_add_mesh(b->renderer, mesh);
-    if (device_id != *id)
-        return prom_fail(error, PROM_ERR_UNSUPPORTED, "mesh %u got id %u on the device", *id,
-                         device_id);
-    prom_array_push(&b->mesh_infos, (prom_mesh_info){mesh->vertex_count, mesh->index_count,
-                                                     mesh->submesh_count});
-    return PROM_OK;
-}
+#include <assert.h>
+
+// A mesh with gaps may be shown up to the size at which they cover this many pixels: few enough
+// that all of a frame's gaps stay under half a percent of it (by taste, then seen on the
+// scenes).
+#define GAPS_SHOWN_PX 24.0f
+// One whose gaps allow less than this is of no use.
+#define LEAST_SIZE_PX 16.0f
 
 prom_status prom_build_add_texture(prom_build_state *b, const prom_texture *texture,
                                    uint32_t *id, prom_error *error)
@@ -30,16 +25,6 @@ prom_status prom_build_add_texture(prom_build_state *b, const prom_texture *text
                     (prom_texture_info){texture->kind, texture->width, texture->height,
                                         texture->layers, texture->levels});
     return PROM_OK;
-}
-
-uint32_t prom_build_add_rep(prom_build_state *b, uint32_t p, const prom_representation *rep)
-{
-    prom_prototype *prototype = &b->prototypes[p];
-    if (prototype->rep_count == 0) prototype->first_rep = (uint32_t)b->reps.count;
-    prototype->rep_count++;
-    prom_array_push(&b->reps, *rep);
-    memset(prom_array_extend(&b->accuracy, 1), 255, sizeof *b->accuracy.data);
-    return (uint32_t)b->reps.count - 1;
 }
 
 // The shading of most of a mesh's triangles.
@@ -64,36 +49,87 @@ static uint32_t main_shading(const prom_build_state *b, const prom_mesh *mesh)
     return most;
 }
 
-prom_representation prom_build_mesh_rep(const prom_build_state *b, const prom_mesh *mesh,
-                                        uint32_t mesh_id, uint32_t level, float error)
+// Cost features and shading of a mesh.
+static void fill_features(const prom_build_state *b, const prom_mesh *mesh,
+                          prom_representation *rep)
 {
-    return (prom_representation){
-        .kind = PROM_REP_MESH,
-        .mesh = mesh_id,
-        .texture = PROM_NONE,
-        .shading = main_shading(b, mesh),
-        .level = level,
-        .error = error,
-        .max_size_px = INFINITY,
-        .draws = mesh->submesh_count,
-        .vertices = mesh->vertex_count,
-        .triangles = mesh->index_count / 3,
-    };
+    rep->shading = rep->texture == PROM_NONE ? main_shading(b, mesh) : PROM_SHADE_IMPOSTOR;
+    rep->max_size_px = rep->kind == PROM_REP_MESH ? INFINITY : PROM_SIZE_MAX_PX;
+    rep->draws = mesh->submesh_count;
+    rep->vertices = mesh->vertex_count;
+    rep->triangles = mesh->index_count / 3;
 }
 
-void prom_build_measure_rep(prom_build_state *b, uint32_t rep, float radius)
+// The near-field function through the rows of a mesh.
+static float fit_near(const struct prom_accuracy_row *row, float error, float radius)
 {
-    prom_representation *r = &b->reps.data[rep];
-    uint8_t(*rows)[PROM_SIZES] = b->accuracy.data[rep].a;
-    prom_baker_take_views(b->baker, radius, &b->views);
-    prom_measure_compare(b->measure, &b->views, rows);
-    if (r->kind != PROM_REP_MESH || !(r->error > 0)) return;
     float e_px[PROM_SIZES], mean[PROM_SIZES];
     for (uint32_t s = 0; s < PROM_SIZES; s++) {
         uint32_t sum = 0;
-        for (uint32_t d = 0; d < PROM_DIRS; d++) sum += rows[d][s];
-        e_px[s] = r->error * prom_size_of_bin(s) / (2.0f * radius);
+        for (uint32_t d = 0; d < PROM_DIRS; d++) sum += row->a[d][s];
+        e_px[s] = error * prom_size_of_bin(s) / (2.0f * radius);
         mean[s] = (float)sum / (255.0f * PROM_DIRS);
     }
-    r->near_k = prom_accuracy_fit_near(e_px, mean, PROM_SIZES);
+    return prom_accuracy_fit_near(e_px, mean, PROM_SIZES);
+}
+
+// Fills the row and near_k; false if the representation is not admitted.
+static bool measure(prom_build_state *b, uint32_t p, uint32_t device_id,
+                    prom_admission admission, prom_representation *rep,
+                    struct prom_accuracy_row *row)
+{
+    const prom_prototype *proto = &b->prototypes[p];
+    memset(row, 255, sizeof *row);
+    if (admission == PROM_ADMIT_UNMEASURED) return true;
+    // The mesh stands in the prototype's frame, the views look at the bounds' centre.
+    prom_draw_item item = {.mesh = device_id,
+                           .texture = rep->texture,
+                           .flags = rep->flags,
+                           .origin = {-proto->center[0], -proto->center[1], -proto->center[2]},
+                           .basis = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    prom_baker_set_subject(b->baker, &item, 1);
+    if (admission == PROM_ADMIT_TRUTH) {
+        prom_baker_take_views(b->baker, proto->radius, &b->truth);
+        prom_measure_set_truth(b->measure, &b->truth, b->coverage[p]);
+        return true;
+    }
+    prom_baker_take_views(b->baker, proto->radius, &b->views);
+    float gaps = prom_measure_compare(b->measure, &b->views, row->a);
+    if (rep->kind == PROM_REP_MESH && rep->error > 0)
+        rep->near_k = fit_near(row, rep->error, proto->radius);
+    if (rep->kind == PROM_REP_MESH && gaps > 0)
+        rep->max_size_px = PROM_GAP_PX * sqrtf(GAPS_SHOWN_PX / gaps);
+    return rep->max_size_px >= LEAST_SIZE_PX;
+}
+
+prom_status prom_build_add_rep(prom_build_state *b, uint32_t p, const prom_mesh *mesh,
+                               const prom_representation *rep, prom_admission admission,
+                               uint32_t *mesh_id, prom_error *error)
+{
+    prom_representation r = *rep;
+    struct prom_accuracy_row row;
+    if (mesh_id) *mesh_id = PROM_NONE;
+    uint32_t device_id = prom_renderer_add_mesh(b->renderer, mesh);
+    if (device_id == PROM_NONE)
+        return prom_fail(error, PROM_ERR_UNSUPPORTED,
+                         "the device has no memory for more meshes");
+    fill_features(b, mesh, &r);
+    if (!measure(b, p, device_id, admission, &r, &row)) {
+        b->open_reps++;
+        prom_renderer_truncate(b->renderer, device_id,
+                               prom_renderer_texture_count(b->renderer));
+        return PROM_OK;
+    }
+    prom_status status = prom_writer_add_mesh(b->writer, mesh, &r.mesh, error);
+    if (status) return status;
+    assert(r.mesh == device_id); // the stores grow together
+    prom_array_push(&b->mesh_infos, (prom_mesh_info){mesh->vertex_count, mesh->index_count,
+                                                     mesh->submesh_count});
+    prom_prototype *proto = &b->prototypes[p];
+    if (proto->rep_count == 0) proto->first_rep = (uint32_t)b->reps.count;
+    proto->rep_count++;
+    prom_array_push(&b->reps, r);
+    prom_array_push(&b->accuracy, row);
+    if (mesh_id) *mesh_id = r.mesh;
+    return PROM_OK;
 }

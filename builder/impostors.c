@@ -43,28 +43,12 @@ static void make_texture(prom_texture_kind kind, const uint8_t *color, const uin
 }
 
 static prom_status add_box(prom_build_state *b, uint32_t p, const prom_mesh *mesh,
-                           const float center[3], uint32_t kind, uint32_t texture,
-                           uint32_t flags, float radius, prom_error *error)
+                           uint32_t kind, uint32_t texture, uint32_t flags, float radius,
+                           prom_error *error)
 {
-    uint32_t id;
-    prom_status status = prom_build_add_mesh(b, mesh, &id, error);
-    if (status) return status;
-    prom_representation rep = prom_build_mesh_rep(b, mesh, id, 0, radius);
-    rep.kind = kind;
-    rep.texture = texture;
-    rep.flags = flags;
-    rep.max_size_px = PROM_SIZE_MAX_PX;
-    rep.shading = texture == PROM_NONE ? PROM_SHADE_PLAIN : PROM_SHADE_IMPOSTOR;
-    uint32_t r = prom_build_add_rep(b, p, &rep);
-    // The mesh stands in the prototype's frame, the views look at the bounds' centre.
-    prom_draw_item item = {.mesh = id,
-                           .texture = texture,
-                           .flags = flags,
-                           .origin = {-center[0], -center[1], -center[2]},
-                           .basis = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-    prom_baker_set_subject(b->baker, &item, 1);
-    prom_build_measure_rep(b, r, radius);
-    return PROM_OK;
+    prom_representation rep = {
+        .kind = kind, .texture = texture, .flags = flags, .error = radius};
+    return prom_build_add_rep(b, p, mesh, &rep, PROM_ADMIT_MEASURED, NULL, error);
 }
 
 prom_status prom_build_add_boxes(prom_build_state *b, uint32_t p, const float center[3],
@@ -93,8 +77,8 @@ prom_status prom_build_add_boxes(prom_build_state *b, uint32_t p, const float ce
         prom_texture_finish(&texture);
         if (!status) {
             prom_mesh_init_box(&mesh, center, thick, NULL);
-            status = add_box(b, p, &mesh, center, PROM_REP_TEXTURED_BOX, texture_id, flags,
-                             radius, error);
+            status =
+                add_box(b, p, &mesh, PROM_REP_TEXTURED_BOX, texture_id, flags, radius, error);
             prom_mesh_finish(&mesh);
         }
     }
@@ -102,8 +86,7 @@ prom_status prom_build_add_boxes(prom_build_state *b, uint32_t p, const float ce
         uint8_t colors[6][4];
         average_faces(color, colors);
         prom_mesh_init_box(&mesh, center, thick, colors);
-        status =
-            add_box(b, p, &mesh, center, PROM_REP_AVERAGE_BOX, PROM_NONE, flags, radius, error);
+        status = add_box(b, p, &mesh, PROM_REP_AVERAGE_BOX, PROM_NONE, flags, radius, error);
         prom_mesh_finish(&mesh);
     }
     prom_free(color);

@@ -9,6 +9,9 @@
 #define BACKGROUNDS 2
 #define WINDOW_MAX (PROM_VIEW_PX + 2 * PAD)
 #define ENCODE_STEPS 4096
+#define GAP_SIZE 3
+_Static_assert(PROM_VIEW_PX >> (PROM_SIZES - 1 - GAP_SIZE) == PROM_GAP_PX,
+               "gaps have a size bin");
 
 // One picture at one size.
 typedef struct level {
@@ -32,7 +35,8 @@ struct prom_measure {
     float *coverage; // of the truth: direction, size
     scratch *scratches;
     unsigned threads;
-    const prom_views *views; // of the running call
+    uint32_t gaps[PROM_DIRS]; // pixels at PROM_GAP_PX
+    const prom_views *views;  // of the running call
     uint16_t *coverage_out;
     uint8_t (*accuracy_out)[PROM_SIZES];
 };
@@ -154,6 +158,13 @@ void prom_measure_set_truth(prom_measure *m, const prom_views *truth,
     prom_parallel_for(PROM_DIRS, truth_of_direction, m);
 }
 
+static uint32_t count_gaps(const float *truth, const float *other, size_t count)
+{
+    uint32_t gaps = 0;
+    for (size_t i = 0; i < count; i++) gaps += truth[i] >= 0.9f && other[i] <= 0.1f;
+    return gaps;
+}
+
 static void compare_size(prom_measure *m, size_t dir, uint32_t size, const level *in,
                          scratch *s)
 {
@@ -173,6 +184,7 @@ static void compare_size(prom_measure *m, size_t dir, uint32_t size, const level
         for (size_t i = 0; i < window; i++) sum += s->error[i];
         error += sum;
     }
+    if (size == GAP_SIZE) m->gaps[dir] = count_gaps(covered, in->coverage, (size_t)side * side);
     // Less than a pixel covered: its error is judged as if it were one.
     double accuracy = 1.0 - error / BACKGROUNDS / (area > 1.0 ? area : 1.0);
     m->accuracy_out[dir][size] = (uint8_t)(255.0 * (accuracy > 0 ? accuracy : 0) + 0.5);
@@ -184,12 +196,16 @@ static void compare_direction(void *user, size_t dir, unsigned thread)
     each_size(m, dir, &m->scratches[thread], compare_size);
 }
 
-void prom_measure_compare(prom_measure *m, const prom_views *views,
-                          uint8_t accuracy[PROM_DIRS][PROM_SIZES])
+float prom_measure_compare(prom_measure *m, const prom_views *views,
+                           uint8_t accuracy[PROM_DIRS][PROM_SIZES])
 {
     m->views = views;
     m->accuracy_out = accuracy;
     prom_parallel_for(PROM_DIRS, compare_direction, m);
+    uint32_t most = 0;
+    for (uint32_t d = 0; d < PROM_DIRS; d++)
+        if (m->gaps[d] > most) most = m->gaps[d];
+    return (float)most;
 }
 
 void prom_measure_shares(const prom_views *views, uint32_t item_count,

@@ -52,9 +52,12 @@ static prom_status stage_leaves(prom_build_state *b, prom_error *error)
 static uint64_t content_so_far(const prom_build_state *b)
 {
     uint64_t h = b->source.content_hash;
-    if (b->objects.objects.count)
-        h = prom_hash(b->objects.objects.data,
-                      b->objects.objects.count * sizeof *b->objects.objects.data, h);
+    for (size_t i = 0; i < b->objects.objects.count; i++) { // by field: structs have padding
+        const prom_object *o = &b->objects.objects.data[i];
+        h = prom_hash(&o->shape, sizeof o->shape, h);
+        h = prom_hash(o->placement.origin, sizeof o->placement.origin, h);
+        h = prom_hash(o->placement.basis, sizeof o->placement.basis, h);
+    }
     for (size_t i = 0; i < b->tree.nodes.count; i++)
         h = prom_hash(&b->tree.nodes.data[i].first_child, sizeof(uint32_t), h);
     for (size_t i = 0; b->shapes && i < b->objects.shapes.count; i++)
@@ -125,6 +128,8 @@ static prom_status run_stages(prom_build_state *b, const char *scene, prom_error
         status = prom_writer_add_stage(b->writer, stages[i].name, content_so_far(b), ms, error);
         if (status) return status;
     }
+    prom_log(PROM_LOG_INFO, "meshes left out because they leave gaps: %u; kept: %zu",
+             b->open_reps, b->reps.count);
     return record_settings(b, scene, error);
 }
 

@@ -10,8 +10,8 @@ typedef struct prom_build_options {
     prom_import_options import;
     prom_object_options objects;
     prom_tree_options tree;
-    uint32_t texture_mb;     // bytes of impostor pictures on the device, in MiB; 0: 256
-    const char *profile;     // cost profile whose hash goes into the content; NULL: none
+    uint32_t texture_mb; // bytes of impostor pictures on the device, in MiB; 0: 256
+    const char *profile; // cost profile whose hash goes into the content; NULL: none
 } prom_build_options;
 
 typedef struct prom_build_report {

@@ -111,8 +111,9 @@ static void collect_truth(const prom_build_state *b, uint32_t node, uint32_t id,
     const prom_shape_build *s = &b->shapes[object->shape];
     float scale = prom_basis_scale(object->placement.basis);
     uint32_t level = 0;
-    while (level + 1 < s->level_count && s->errors[level + 1] * scale <= tolerance) level++;
-    prom_draw_item item = {.mesh = s->first_mesh + level, .texture = PROM_NONE, .id = id};
+    for (uint32_t l = 1; l < s->level_count; l++)
+        if (s->mesh_ids[l] != PROM_NONE && s->errors[l] * scale <= tolerance) level = l;
+    prom_draw_item item = {.mesh = s->mesh_ids[level], .texture = PROM_NONE, .id = id};
     for (int a = 0; a < 3; a++)
         item.origin[a] = (float)(object->placement.origin[a] - center[a]);
     memcpy(item.basis, object->placement.basis, sizeof item.basis);
@@ -140,21 +141,14 @@ static prom_status add_meshes(prom_build_state *b, uint32_t index, uint32_t p,
                               prom_error *error)
 {
     const prom_cluster_build *cluster = &b->clusters[index];
-    const prom_prototype *proto = &b->prototypes[p];
     for (uint32_t l = 0; l < cluster->level_count; l++) {
-        uint32_t id;
-        prom_status status = prom_build_add_mesh(b, &cluster->levels[l], &id, error);
+        prom_representation rep = {.kind = PROM_REP_MESH,
+                                   .texture = PROM_NONE,
+                                   .level = l,
+                                   .error = cluster->errors[l]};
+        prom_status status = prom_build_add_rep(b, p, &cluster->levels[l], &rep,
+                                                PROM_ADMIT_MEASURED, NULL, error);
         if (status) return status;
-        prom_representation rep =
-            prom_build_mesh_rep(b, &cluster->levels[l], id, l, cluster->errors[l]);
-        uint32_t r = prom_build_add_rep(b, p, &rep);
-        prom_draw_item item = {
-            .mesh = id,
-            .texture = PROM_NONE,
-            .origin = {-proto->center[0], -proto->center[1], -proto->center[2]},
-            .basis = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-        prom_baker_set_subject(b->baker, &item, 1);
-        prom_build_measure_rep(b, r, proto->radius);
     }
     return PROM_OK;
 }

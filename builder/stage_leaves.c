@@ -122,32 +122,23 @@ static prom_status add_leaf(prom_build_state *b, uint32_t p, prom_error *error)
     // The sphere around the box, not around the vertices: impostors fill the box.
     proto->radius = fmaxf(glm_vec3_norm(proto->half), 1e-6f);
 
+    uint32_t cheapest = 0; // kept level
     for (uint32_t l = 0; l < s->level_count; l++) {
-        uint32_t id;
-        prom_status status = prom_build_add_mesh(b, &s->levels[l], &id, error);
+        prom_representation rep = {
+            .kind = PROM_REP_MESH, .texture = PROM_NONE, .level = l, .error = s->errors[l]};
+        prom_admission admission = shape->layer == PROM_LAYER_BACKDROP ? PROM_ADMIT_UNMEASURED
+                                   : l == 0                            ? PROM_ADMIT_TRUTH
+                                                                       : PROM_ADMIT_MEASURED;
+        prom_status status =
+            prom_build_add_rep(b, p, &s->levels[l], &rep, admission, &s->mesh_ids[l], error);
         if (status) return status;
-        if (l == 0) s->first_mesh = id;
-        prom_representation rep = prom_build_mesh_rep(b, &s->levels[l], id, l, s->errors[l]);
-        uint32_t r = prom_build_add_rep(b, p, &rep);
-        prom_draw_item item = item_around(id, proto->center);
-        if (shape->layer == PROM_LAYER_BACKDROP) continue;
-        prom_baker_set_subject(b->baker, &item, 1);
-        if (l == 0) {
-            prom_baker_take_views(b->baker, proto->radius, &b->truth);
-            prom_measure_set_truth(b->measure, &b->truth, b->coverage[p]);
-        } else {
-            prom_build_measure_rep(b, r, proto->radius);
-        }
+        if (s->mesh_ids[l] != PROM_NONE) cheapest = l;
     }
-    uint32_t cheapest = s->levels[s->level_count - 1].index_count / 3;
-    if (shape->layer != PROM_LAYER_OBJECT || cheapest <= MIN_TRIANGLES) {
-        // A box would cost as much as the last level and show less; unless that level's
-        // materials make it many draws.
-        if (shape->layer != PROM_LAYER_OBJECT ||
-            s->levels[s->level_count - 1].submesh_count < 2)
-            return PROM_OK;
-    }
-    prom_draw_item item = item_around(s->first_mesh, proto->center);
+    if (shape->layer != PROM_LAYER_OBJECT) return PROM_OK;
+    // Where a level costs as little, a box would only show less.
+    const prom_mesh *last = &s->levels[cheapest];
+    if (last->index_count / 3 <= MIN_TRIANGLES && last->submesh_count == 1) return PROM_OK;
+    prom_draw_item item = item_around(s->mesh_ids[0], proto->center);
     prom_baker_set_subject(b->baker, &item, 1);
     return prom_build_add_boxes(b, p, proto->center, proto->half, proto->radius, false,
                                 b->boxed[p], error);

@@ -45,7 +45,8 @@ typedef struct prom_representation {
     uint32_t shading;    // prom_shading of most of its pixels
     uint32_t level;      // 0 = finest of its kind
     float error;         // greatest object-space deviation, units of the prototype's frame
-    float max_size_px;   // largest projected diameter at which it may be shown; INFINITY: any
+    float max_size_px;   // largest projected diameter at which it may be shown; INFINITY: any.
+                         // Impostors: what was measured; meshes: where their gaps would show
     float near_k;        // accuracy(e_px) = 1 / (1 + near_k * e_px), see benefit/accuracy.h
     uint32_t draws, vertices, triangles; // cost features
 } prom_representation;

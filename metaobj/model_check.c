@@ -80,11 +80,12 @@ static const char *check_rep(const prom_model *m, const prom_representation *r)
     return NULL;
 }
 
+// The finest mesh, which serves where nothing else is valid.
 static bool has_mesh(const prom_model *m, const prom_prototype *p)
 {
-    for (uint32_t r = 0; r < p->rep_count; r++)
-        if (m->reps[p->first_rep + r].kind == PROM_REP_MESH) return true;
-    return false;
+    if (!p->rep_count) return false;
+    const prom_representation *finest = &m->reps[p->first_rep];
+    return finest->kind == PROM_REP_MESH && isinf(finest->max_size_px);
 }
 
 static const char *check_prototype(const prom_model *m, const prom_prototype *p, uint8_t *owned)

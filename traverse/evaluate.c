@@ -98,8 +98,9 @@ static void add_options(prom_eval *eval, uint32_t node)
     for (uint32_t i = 0; i < p->rep_count; i++) {
         uint32_t rep = p->first_rep + i;
         const prom_representation *r = &m->reps[rep];
-        if (r->kind != PROM_REP_MESH && (n->near_case || !(n->size_px <= r->max_size_px)))
-            continue;
+        bool is_mesh = r->kind == PROM_REP_MESH;
+        if (!is_mesh && n->near_case) continue;
+        if (!((is_mesh ? size : n->size_px) <= r->max_size_px)) continue;
         eval->options[eval->option_count++] = (prom_option){
             .rep = rep,
             .benefit = n->px * prom_accuracy(m, rep, n->dir, size, p->radius),

@@ -16,7 +16,8 @@ static void destroy(void *state)
     prom_free(state);
 }
 
-// Representations stand from the finest mesh on, and a mesh is valid in every view.
+// Representations stand from the finest mesh on, and the finest mesh of a
+// leaf is valid in every view.
 static void select_full(void *state, const prom_selection *selection, prom_cut *cut)
 {
     prom_eval *eval = state;
