@@ -8,7 +8,7 @@
 // A mesh with gaps may be shown up to the size at which they cover this many pixels: few enough
 // that all of a frame's gaps stay under half a percent of it (by taste, then seen on the
 // scenes).
-#define GAPS_SHOWN_PX 24.0f
+#define GAPS_SHOWN_PX 64.0f
 // One whose gaps allow less than this is of no use.
 #define LEAST_SIZE_PX 16.0f
 

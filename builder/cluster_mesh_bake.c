@@ -11,6 +11,9 @@
 // Masked components of up to this many triangles shrink as a whole; in larger ones triangles
 // that are mostly see-through shrink one by one (both by taste).
 enum { CARD_TRIANGLES = 8 };
+// Points of a triangle whose colours are averaged, and how much finer than the triangle they
+// look.
+enum { COLOR_POINTS = 24, FINER_LEVELS = 2 };
 #define SEE_THROUGH 0.9f
 // Less cover than this is not worth a triangle.
 #define LEAST_COVERAGE 0.01f
@@ -62,28 +65,43 @@ static void drop_blended(baker *b)
     faces->count = n;
 }
 
-// Every vertex gets the area-weighted mean of its triangles' colours around it: half-way
-// between the corner and the middle.
+// Adds the colours of a triangle to its corners: points all over it, each weighted with its
+// barycentric coordinates. The level is finer than the triangle, so that in an atlas the
+// neighbours' pictures stay out.
+static void add_triangle(const baker *b, const uint32_t *t, float (*sums)[4])
+{
+    const prom_vertex *v = b->work.vertices.data;
+    const prom_sampler *s = &b->samplers[prom_owner_submesh(b->work.owners.data[t[0]])];
+    const float *uv[3] = {v[t[0]].uv, v[t[1]].uv, v[t[2]].uv};
+    uint32_t level = prom_sampler_level(s, uv);
+    level = level > FINER_LEVELS ? level - FINER_LEVELS : 0;
+    float area = area_of(b, t);
+    int points = s->texture ? COLOR_POINTS : 1;
+    for (int i = 0; i < points; i++) {
+        // The sequence of prom_sampler_coverage, folded into the triangle.
+        float w[3] = {0, 1 / 3.0f, 1 / 3.0f}, at[2], rgb[3];
+        if (points > 1) {
+            w[1] = 0.5f + 0.7548776662f * (float)i, w[2] = 0.5f + 0.5698402910f * (float)i;
+            w[1] -= floorf(w[1]), w[2] -= floorf(w[2]);
+            if (w[1] + w[2] > 1) w[1] = 1 - w[1], w[2] = 1 - w[2];
+        }
+        w[0] = 1 - w[1] - w[2];
+        for (int a = 0; a < 2; a++) at[a] = w[0] * uv[0][a] + w[1] * uv[1][a] + w[2] * uv[2][a];
+        prom_sampler_color(s, level, at, rgb);
+        for (int k = 0; k < 3; k++) {
+            for (int c = 0; c < 3; c++) sums[t[k]][c] += rgb[c] * area * w[k];
+            sums[t[k]][3] += area * w[k];
+        }
+    }
+}
+
+// Every vertex gets the mean of its triangles' colours around it.
 static void color_vertices(baker *b)
 {
     prom_vertex *v = b->work.vertices.data;
     const prom_index_array *faces = &b->work.indices;
     float(*sums)[4] = prom_calloc(b->work.vertices.count, sizeof *sums);
-    for (size_t i = 0; i < faces->count; i += 3) {
-        const uint32_t *t = faces->data + i;
-        const prom_sampler *s = &b->samplers[prom_owner_submesh(b->work.owners.data[t[0]])];
-        const float *uv[3] = {v[t[0]].uv, v[t[1]].uv, v[t[2]].uv};
-        uint32_t level = prom_sampler_level(s, uv);
-        float area = area_of(b, t);
-        for (int k = 0; k < 3; k++) {
-            float at[2], rgb[3];
-            for (int a = 0; a < 2; a++)
-                at[a] = uv[k][a] / 2 + (uv[0][a] + uv[1][a] + uv[2][a]) / 6;
-            prom_sampler_color(s, level, at, rgb);
-            for (int c = 0; c < 3; c++) sums[t[k]][c] += rgb[c] * area;
-            sums[t[k]][3] += area;
-        }
-    }
+    for (size_t i = 0; i < faces->count; i += 3) add_triangle(b, faces->data + i, sums);
     for (size_t i = 0; i < b->work.vertices.count; i++) {
         if (sums[i][3] <= 0) continue;
         for (int c = 0; c < 3; c++)
