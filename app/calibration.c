@@ -3,9 +3,22 @@
 #include "metaobj/base/log.h"
 #include "render/calibrate.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
+
+#define LEAST_MARGIN 0.08
+#define MOST_MARGIN 0.30
+
+// The part of the budget to keep back so that the slow frames of a picture predicted at the
+// rest still fit; within bounds, since a disturbed calibration must not waste half of each
+// frame.
+static double margin_for(double noise)
+{
+    double margin = 1.0 - 1.0 / (1.0 + noise);
+    return fmin(fmax(margin, LEAST_MARGIN), MOST_MARGIN);
+}
 
 prom_status prom_calibration_run(prom_context *context, prom_renderer *renderer,
                                  const uint32_t size_px[2], int effort, prom_cost_model *model,
@@ -15,11 +28,14 @@ prom_status prom_calibration_run(prom_context *context, prom_renderer *renderer,
     prom_cost_samples *all = samples ? samples : &own;
     prom_timer *timer = prom_timer_create(renderer);
     if (queries) *queries = prom_timer_uses_queries(timer);
+    double noise = 0;
     prom_status status =
-        prom_calibrate_run(renderer, timer, size_px[0], size_px[1], effort, all, error);
+        prom_calibrate_run(renderer, timer, size_px[0], size_px[1], effort, all, &noise, error);
     if (!status) status = prom_cost_fit(all->data, all->count, model, error);
-    if (!status)
+    if (!status) {
+        model->margin = margin_for(noise);
         snprintf(model->renderer, sizeof model->renderer, "%s", prom_context_renderer(context));
+    }
     prom_timer_destroy(timer);
     prom_array_finish(&own);
     return status;

@@ -5,6 +5,7 @@
 #include "render/calibrate_scene.h"
 #include "render/renderer_private.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #define SAMPLE_MS 5.0 // each sample is drawn for at least this long
@@ -12,6 +13,8 @@
 #define MAX_REPEATS 64
 #define FIXED_SAMPLES 5u // empty frames
 #define PASSES 2
+#define NOISE_MS 20.0 // a frame of about this time is repeated to see the noise
+#define NOISE_FRAMES 100
 
 static size_t sample_count(int effort)
 {
@@ -116,6 +119,25 @@ static void take_passes(const calibration *c, int effort, prom_cost_samples *sam
     prom_progress_end(&progress);
 }
 
+// How far the slow frames of one and the same picture lie above its median: 95th percentile
+// over median, less 1. The sample that takes nearest to a frame's usual time is drawn again.
+static double measure_noise(const calibration *c, const prom_cost_sample *samples, size_t count)
+{
+    size_t best = FIXED_SAMPLES;
+    for (size_t i = FIXED_SAMPLES; i < count; i++)
+        if (fabs(samples[i].ms - NOISE_MS) < fabs(samples[best].ms - NOISE_MS)) best = i;
+    scene_plan plan = scene_plan_at(&c->kit, (prom_shading)(best % PROM_SHADE_COUNT),
+                                    (uint32_t)(best / PROM_SHADE_COUNT));
+    double ms[NOISE_FRAMES];
+    for (int i = 0; i < NOISE_FRAMES; i++) {
+        prom_timer_begin(c->timer);
+        draw(c, &plan);
+        ms[i] = prom_timer_end(c->timer);
+    }
+    qsort(ms, NOISE_FRAMES, sizeof *ms, compare_doubles);
+    return ms[NOISE_FRAMES * 95 / 100] / ms[NOISE_FRAMES / 2] - 1.0;
+}
+
 // The materials are the one thing that truncating does not bring back.
 static void keep_materials(const prom_renderer *r, prom_material **kept, uint32_t *count)
 {
@@ -126,7 +148,7 @@ static void keep_materials(const prom_renderer *r, prom_material **kept, uint32_
 
 prom_status prom_calibrate_run(prom_renderer *renderer, prom_timer *timer, uint32_t width,
                                uint32_t height, int effort, prom_cost_samples *samples,
-                               prom_error *error)
+                               double *noise, prom_error *error)
 {
     if (effort < 1 || effort > 3)
         return prom_fail(error, PROM_ERR_USAGE, "calibration effort %d: give 1, 2 or 3",
@@ -145,10 +167,13 @@ prom_status prom_calibrate_run(prom_renderer *renderer, prom_timer *timer, uint3
     glCreateQueries(GL_SAMPLES_PASSED, 1, &c.query);
 
     prom_status status = PROM_OK;
-    if (scene_kit_upload(&c.kit, renderer))
+    size_t before = samples->count;
+    if (scene_kit_upload(&c.kit, renderer)) {
         take_passes(&c, effort, samples);
-    else
+        *noise = measure_noise(&c, samples->data + before, samples->count - before);
+    } else {
         status = renderer_out_of_memory(error);
+    }
 
     glDeleteQueries(1, &c.query);
     prom_draw_list_destroy(c.list);

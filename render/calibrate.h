@@ -9,9 +9,10 @@
 #include "render/timer.h"
 
 // Fills *samples (grown as needed) with timed draws at the given frame size.
+// noise: how far the 95th percentile of repeated frames lies above their median, 0.2 = 20 %.
 // effort: 1 is a few seconds, 3 about 20 s. Everything it uploads is freed again.
 prom_status prom_calibrate_run(prom_renderer *renderer, prom_timer *timer, uint32_t width,
                                uint32_t height, int effort, prom_cost_samples *samples,
-                               prom_error *error);
+                               double *noise, prom_error *error);
 
 #endif

@@ -31,10 +31,13 @@ static void calibration_covers_all_features(void **state)
     uint32_t kept = add_square(color, 0);
     prom_timer *timer = prom_timer_create(fix.renderer);
     prom_cost_samples samples = {0};
+    double noise = -1;
     prom_error error = {0};
-    assert_int_equal(prom_calibrate_run(fix.renderer, timer, 320, 180, 1, &samples, &error),
-                     PROM_OK);
+    assert_int_equal(
+        prom_calibrate_run(fix.renderer, timer, 320, 180, 1, &samples, &noise, &error),
+        PROM_OK);
     assert_true(samples.count >= 60);
+    assert_true(noise >= 0 && isfinite(noise));
     prom_cost_features most = {0};
     for (size_t i = 0; i < samples.count; i++) {
         const prom_cost_features *f = &samples.data[i].features;
@@ -68,8 +71,9 @@ static void calibration_covers_all_features(void **state)
     uint8_t rgba[4];
     prom_target_read_rgba(target, 4, 4, 1, 1, rgba);
     assert_near(rgba, color, 1);
-    assert_int_equal(prom_calibrate_run(fix.renderer, timer, 320, 180, 9, &samples, &error),
-                     PROM_ERR_USAGE);
+    assert_int_equal(
+        prom_calibrate_run(fix.renderer, timer, 320, 180, 9, &samples, &noise, &error),
+        PROM_ERR_USAGE);
     prom_target_destroy(target);
     prom_timer_destroy(timer);
     prom_array_finish(&samples);
