@@ -1,0 +1,84 @@
+// LINK: prom_metaobj
+//
+// Statistics of a run: percentiles by nearest rank, misses, prediction errors.
+#include "app/statistics.c"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+
+#define NEAR(a, b) assert_true(fabs((a) - (b)) < 1e-9)
+
+static void percentiles_are_by_nearest_rank(void **state)
+{
+    (void)state;
+    double values[200];
+    for (int i = 0; i < 200; i++) values[i] = (i * 73) % 200 + 1; // 1..200, mixed
+    prom_spread s = prom_spread_of(values, 200);
+    NEAR(s.p50, 100);
+    NEAR(s.p95, 190);
+    NEAR(s.p99, 198);
+    NEAR(s.max, 200);
+    NEAR(s.mean, 100.5);
+    NEAR(s.std, sqrt((200.0 * 200.0 - 1) / 12)); // of the uniform distribution on 1..n
+}
+
+static void one_frame_is_all_of_its_percentiles(void **state)
+{
+    (void)state;
+    double value = 7;
+    prom_spread s = prom_spread_of(&value, 1);
+    NEAR(s.p50, 7);
+    NEAR(s.p99, 7);
+    NEAR(s.max, 7);
+    NEAR(s.std, 0);
+}
+
+static void a_percentile_is_never_between_two_frames(void **state)
+{
+    (void)state;
+    double values[3] = {30, 10, 20};
+    prom_spread s = prom_spread_of(values, 3);
+    NEAR(s.p50, 20); // rank 1.5 is raised to 2
+    NEAR(s.p95, 30);
+}
+
+static void misses_are_frames_over_the_budget(void **state)
+{
+    (void)state;
+    const double times[] = {9, 10, 11, 12, 13, 10, 14, 9};
+    prom_frame_record records[8] = {0};
+    for (int i = 0; i < 8; i++) records[i].frame_ms = times[i];
+    prom_run_statistics s = prom_run_statistics_of(records, 8, 10);
+    assert_int_equal(s.misses, 4); // a frame that takes the whole budget is none
+    assert_int_equal(s.longest_misses, 3);
+    NEAR(s.miss_rate, 0.5);
+    NEAR(s.use_of_budget, 88.0 / 8 / 10);
+}
+
+static void predictions_are_compared_with_the_drawing(void **state)
+{
+    (void)state;
+    prom_frame_record records[3] = {
+        {.frame_ms = 99, .draw_ms = 10, .predicted_ms = 12}, // 20 % over
+        {.frame_ms = 99, .draw_ms = 10, .predicted_ms = 5},  // half: took twice as long
+        {.frame_ms = 99, .draw_ms = 10, .predicted_ms = 0},  // no prediction
+    };
+    prom_run_statistics s = prom_run_statistics_of(records, 3, 10);
+    NEAR(s.mape, (0.2 + 0.5) / 2);
+    NEAR(s.worst_under, 1.0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(percentiles_are_by_nearest_rank),
+        cmocka_unit_test(one_frame_is_all_of_its_percentiles),
+        cmocka_unit_test(a_percentile_is_never_between_two_frames),
+        cmocka_unit_test(misses_are_frames_over_the_budget),
+        cmocka_unit_test(predictions_are_compared_with_the_drawing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
