@@ -9,6 +9,7 @@
 
 #define MIN_TRIANGLES 12u     // of a level; a box has as many
 #define MERGE_TRIANGLES 2048u // of the level that goes into cluster meshes
+#define SHEET_FLATNESS 0.05f  // thinner than this part of its length and width
 #define BOXED_TRIANGLES 64u   // fewer, and a textured box saves nothing
 
 prom_status prom_stage_textures(prom_build_state *b, prom_error *error)
@@ -31,6 +32,17 @@ typedef struct levels_job {
     prom_progress progress;
 } levels_job;
 
+// A pavement, a stretch of road, a wall: flat, and likely to meet others at its border, which
+// no level may move then.
+static bool is_sheet(const prom_box *bounds)
+{
+    float half[3];
+    prom_box_half(bounds, half);
+    for (int a = 0; a < 3; a++)
+        if (half[a] < SHEET_FLATNESS * fminf(half[(a + 1) % 3], half[(a + 2) % 3])) return true;
+    return false;
+}
+
 static void make_levels(void *user, size_t i, unsigned thread)
 {
     (void)thread;
@@ -39,7 +51,8 @@ static void make_levels(void *user, size_t i, unsigned thread)
     prom_shape_build *s = &job->b->shapes[i];
     prom_mesh_weld(&shape->mesh, 0);
     bool fixed = shape->layer == PROM_LAYER_BACKDROP || shape->layer == PROM_LAYER_BLENDED;
-    s->level_count = prom_simplify_levels(&shape->mesh, shape->lock_border, MIN_TRIANGLES,
+    bool lock = shape->lock_border || is_sheet(&shape->bounds);
+    s->level_count = prom_simplify_levels(&shape->mesh, lock, MIN_TRIANGLES,
                                           fixed ? 1 : PROM_LEVELS_MAX, s->levels, s->errors);
     prom_mesh_finish(&shape->mesh); // level 0 holds it now
     uint32_t merge = 0;
