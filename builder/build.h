@@ -16,6 +16,7 @@ typedef struct prom_shape_build {
     prom_mesh levels[PROM_LEVELS_MAX];
     float errors[PROM_LEVELS_MAX];
     uint32_t level_count;
+    float max_size_px[PROM_LEVELS_MAX]; // as in its representation
     uint32_t mesh_ids[PROM_LEVELS_MAX]; // container and renderer ids; PROM_NONE: not kept
     prom_mesh merge; // a level with its materials baked to colours, for cluster meshes
     float merge_error;

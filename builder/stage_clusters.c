@@ -97,22 +97,26 @@ static void merge_cluster(void *user, size_t i, unsigned thread)
     }
 }
 
-// Items of all leaves below `node`, around `center` (world), with one id.
+// Items of all leaves below `node`, around `center` (world), with one id, each at the coarsest
+// level that is as good as the object in views of px_per_unit.
 static void collect_truth(const prom_build_state *b, uint32_t node, uint32_t id,
-                          const double center[3], float tolerance, item_list *items)
+                          const double center[3], float px_per_unit, item_list *items)
 {
     const prom_tree_node *n = &b->tree.nodes.data[node];
     if (n->object == PROM_NONE) {
         for (uint32_t c = n->first_child; c < n->first_child + n->child_count; c++)
-            collect_truth(b, c, id, center, tolerance, items);
+            collect_truth(b, c, id, center, px_per_unit, items);
         return;
     }
     const prom_object *object = &b->objects.objects.data[n->object];
     const prom_shape_build *s = &b->shapes[object->shape];
     float scale = prom_basis_scale(object->placement.basis);
     uint32_t level = 0;
+    float size_px = 2.0f * b->prototypes[object->shape].radius * scale * px_per_unit;
     for (uint32_t l = 1; l < s->level_count; l++)
-        if (s->mesh_ids[l] != PROM_NONE && s->errors[l] * scale <= tolerance) level = l;
+        if (s->mesh_ids[l] != PROM_NONE && size_px <= s->max_size_px[l] &&
+            s->errors[l] * scale * px_per_unit <= TRUTH_ERROR_PX)
+            level = l;
     prom_draw_item item = {.mesh = s->mesh_ids[level], .texture = PROM_NONE, .id = id};
     for (int a = 0; a < 3; a++)
         item.origin[a] = (float)(object->placement.origin[a] - center[a]);
@@ -124,10 +128,10 @@ static void measure_truth(prom_build_state *b, uint32_t p, uint32_t node, item_l
 {
     prom_prototype *proto = &b->prototypes[p];
     const prom_tree_node *n = &b->tree.nodes.data[node];
-    float tolerance = TRUTH_ERROR_PX * 2.0f * proto->radius / PROM_VIEW_PX;
+    float px_per_unit = PROM_VIEW_PX / (2.0f * proto->radius);
     items->count = 0;
     for (uint32_t c = 0; c < n->child_count; c++)
-        collect_truth(b, n->first_child + c, c, b->model.center[node], tolerance, items);
+        collect_truth(b, n->first_child + c, c, b->model.center[node], px_per_unit, items);
     prom_baker_set_subject(b->baker, items->data, items->count);
     prom_baker_take_views(b->baker, proto->radius, &b->truth);
     prom_measure_set_truth(b->measure, &b->truth, b->coverage[p]);

@@ -43,17 +43,36 @@ static bool is_sheet(const prom_box *bounds)
     return false;
 }
 
+// Welds, but leaves a mesh without any area as it is: it shows nothing, and does no harm.
+static void weld(prom_mesh *mesh)
+{
+    prom_mesh welded;
+    prom_mesh_copy(&welded, mesh);
+    prom_mesh_weld(&welded, 0);
+    if (!welded.index_count) {
+        prom_mesh_finish(&welded);
+        return;
+    }
+    prom_mesh_finish(mesh);
+    *mesh = welded;
+}
+
 static void make_levels(void *user, size_t i, unsigned thread)
 {
     (void)thread;
     levels_job *job = user;
     prom_shape *shape = &job->b->objects.shapes.data[i];
     prom_shape_build *s = &job->b->shapes[i];
-    prom_mesh_weld(&shape->mesh, 0);
+    weld(&shape->mesh);
     bool fixed = shape->layer == PROM_LAYER_BACKDROP || shape->layer == PROM_LAYER_BLENDED;
     bool lock = shape->lock_border || is_sheet(&shape->bounds);
     s->level_count = prom_simplify_levels(&shape->mesh, lock, MIN_TRIANGLES,
                                           fixed ? 1 : PROM_LEVELS_MAX, s->levels, s->errors);
+    if (!s->level_count) { // nothing in it has an area
+        s->levels[0] = shape->mesh;
+        s->level_count = 1;
+        shape->mesh = (prom_mesh){0};
+    }
     prom_mesh_finish(&shape->mesh); // level 0 holds it now
     uint32_t merge = 0;
     while (merge + 1 < s->level_count && s->levels[merge].index_count / 3 > MERGE_TRIANGLES)
@@ -145,7 +164,9 @@ static prom_status add_leaf(prom_build_state *b, uint32_t p, prom_error *error)
         prom_status status =
             prom_build_add_rep(b, p, &s->levels[l], &rep, admission, &s->mesh_ids[l], error);
         if (status) return status;
-        if (s->mesh_ids[l] != PROM_NONE) cheapest = l;
+        if (s->mesh_ids[l] == PROM_NONE) continue;
+        s->max_size_px[l] = b->reps.data[b->reps.count - 1].max_size_px;
+        cheapest = l;
     }
     if (shape->layer != PROM_LAYER_OBJECT) return PROM_OK;
     // Where a level costs as little, a box would only show less.
