@@ -31,7 +31,8 @@ typedef struct prom_cluster_build {
 } prom_cluster_build;
 
 typedef struct prom_build_state {
-    const prom_build_options *options;
+    const prom_build_options *options; // defaults put in
+    const char *scene_path;
     prom_source source;
     prom_objects objects;
     prom_tree tree;

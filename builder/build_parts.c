@@ -18,9 +18,12 @@ prom_status prom_build_add_texture(prom_build_state *b, const prom_texture *text
     prom_status status = prom_writer_add_texture(b->writer, texture, id, error);
     if (status) return status;
     uint32_t device_id = prom_renderer_add_texture(b->renderer, texture);
-    if (device_id != *id)
-        return prom_fail(error, PROM_ERR_UNSUPPORTED, "texture %u got id %u on the device", *id,
-                         device_id);
+    if (device_id == PROM_NONE)
+        return prom_fail(
+            error, PROM_ERR_UNSUPPORTED,
+            "the device has no memory for more textures; lower --max-texture-px or "
+            "--texture-mb");
+    assert(device_id == *id); // the stores grow together
     prom_array_push(&b->texture_infos,
                     (prom_texture_info){texture->kind, texture->width, texture->height,
                                         texture->layers, texture->levels});

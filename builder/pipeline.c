@@ -4,14 +4,15 @@
 #include "metaobj/base/clock.h"
 #include "metaobj/base/hash.h"
 #include "metaobj/base/log.h"
+#include "traverse/cost.h"
 
-#include <inttypes.h>
 #include <stdio.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
-static prom_status stage_import(prom_build_state *b, const char *path, prom_error *error)
+static prom_status stage_import(prom_build_state *b, prom_error *error)
 {
-    return prom_source_import(path, &b->options->import, &b->source, error);
+    return prom_source_import(b->scene_path, &b->options->import, &b->source, error);
 }
 
 static prom_status stage_objects(prom_build_state *b, prom_error *error)
@@ -42,33 +43,94 @@ static prom_status open_device(prom_build_state *b, prom_error *error)
     return PROM_OK;
 }
 
-static prom_status stage_leaves(prom_build_state *b, prom_error *error)
+// ---- what a stage has made, as one number; chained from the stage before
+
+static uint64_t hash_import(const prom_build_state *b, uint64_t h)
 {
-    b->measure = prom_measure_create(b->mean_luminance);
-    return prom_stage_leaves(b, error);
+    return prom_hash(&b->source.content_hash, sizeof b->source.content_hash, h);
 }
 
-// What the stages so far have made, as one number.
-static uint64_t content_so_far(const prom_build_state *b)
+// By field: the structs have padding.
+static uint64_t hash_objects(const prom_build_state *b, uint64_t h)
 {
-    uint64_t h = b->source.content_hash;
-    for (size_t i = 0; i < b->objects.objects.count; i++) { // by field: structs have padding
+    for (size_t i = 0; i < b->objects.shapes.count; i++) {
+        const prom_shape *s = &b->objects.shapes.data[i];
+        h = prom_mesh_hash(&s->mesh, h + (uint64_t)s->layer);
+    }
+    for (size_t i = 0; i < b->objects.objects.count; i++) {
         const prom_object *o = &b->objects.objects.data[i];
-        h = prom_hash(&o->shape, sizeof o->shape, h);
+        const uint32_t numbers[] = {o->shape, o->name, o->group};
+        h = prom_hash(numbers, sizeof numbers, h);
         h = prom_hash(o->placement.origin, sizeof o->placement.origin, h);
         h = prom_hash(o->placement.basis, sizeof o->placement.basis, h);
     }
-    for (size_t i = 0; i < b->tree.nodes.count; i++)
-        h = prom_hash(&b->tree.nodes.data[i].first_child, sizeof(uint32_t), h);
-    for (size_t i = 0; b->shapes && i < b->objects.shapes.count; i++)
+    return b->objects.names.count ? prom_hash(b->objects.names.data, b->objects.names.count, h)
+                                  : h;
+}
+
+static uint64_t hash_tree(const prom_build_state *b, uint64_t h)
+{
+    for (size_t i = 0; i < b->tree.nodes.count; i++) {
+        const prom_tree_node *n = &b->tree.nodes.data[i];
+        const uint32_t numbers[] = {n->parent, n->first_child, n->child_count,
+                                    n->object, n->cluster,     (uint32_t)n->layer};
+        h = prom_hash(numbers, sizeof numbers, h);
+        h = prom_hash(n->origin, sizeof n->origin, h);
+    }
+    return h;
+}
+
+static uint64_t hash_textures(const prom_build_state *b, uint64_t h)
+{
+    for (size_t i = 0; i < b->source.images.count; i++)
+        h = prom_texture_hash(&b->textures[i], h);
+    return h;
+}
+
+static uint64_t hash_levels(const prom_build_state *b, uint64_t h)
+{
+    for (size_t i = 0; i < b->objects.shapes.count; i++)
         for (uint32_t l = 0; l < b->shapes[i].level_count; l++)
             h = prom_mesh_hash(&b->shapes[i].levels[l], h);
-    for (size_t i = 0; b->clusters && i < b->tree.clusters.count; i++)
+    return h;
+}
+
+// Representations and tables of all prototypes so far.
+static uint64_t hash_reps(const prom_build_state *b, uint64_t h)
+{
+    size_t prototypes = b->objects.shapes.count + b->tree.clusters.count;
+    h = prom_hash(b->coverage, prototypes * sizeof *b->coverage, h);
+    if (b->shares.count)
+        h = prom_hash(b->shares.data, b->shares.count * sizeof *b->shares.data, h);
+    if (!b->reps.count) return h;
+    h = prom_hash(b->reps.data, b->reps.count * sizeof *b->reps.data, h);
+    return prom_hash(b->accuracy.data, b->accuracy.count * sizeof *b->accuracy.data, h);
+}
+_Static_assert(sizeof(prom_representation) == 12 * 4, "hash_reps hashes no padding");
+
+static uint64_t hash_clusters(const prom_build_state *b, uint64_t h)
+{
+    for (size_t i = 0; i < b->tree.clusters.count; i++)
         for (uint32_t l = 0; l < b->clusters[i].level_count; l++)
             h = prom_mesh_hash(&b->clusters[i].levels[l], h);
-    if (b->accuracy.count)
-        h = prom_hash(b->accuracy.data, b->accuracy.count * sizeof *b->accuracy.data, h);
-    return h;
+    return hash_reps(b, h);
+}
+
+// ---- the order of work
+
+// The profile names the device whose costs the model is meant for; it is part of the content.
+static prom_status record_profile(prom_build_state *b, prom_error *error)
+{
+    if (!b->options->profile) return PROM_OK;
+    prom_cost_model cost;
+    prom_status status = prom_cost_load(b->options->profile, &cost, error);
+    if (status) return status;
+    char *text = prom_format("%s: %.9g ms a frame, %.9g a draw, %.9g a vertex, %.9g a triangle",
+                             cost.renderer, cost.fixed_ms, cost.draw_ms, cost.vertex_ms,
+                             cost.triangle_ms);
+    status = prom_writer_set_meta(b->writer, "cost_profile", text, error);
+    prom_free(text);
+    return status;
 }
 
 static prom_status record_settings(prom_build_state *b, const char *scene, prom_error *error)
@@ -103,34 +165,37 @@ static prom_status record_settings(prom_build_state *b, const char *scene, prom_
 
 static prom_status run_stages(prom_build_state *b, const char *scene, prom_error *error)
 {
-    struct {
+    static const struct {
         const char *name;
         prom_status (*run)(prom_build_state *, prom_error *);
+        uint64_t (*hash)(const prom_build_state *, uint64_t);
     } stages[] = {
-        {"import", NULL}, // takes the path
-        {"objects", stage_objects},
-        {"tree", stage_tree},
-        {"textures", prom_stage_textures},
-        {"levels", prom_stage_levels},
-        {"leaves", stage_leaves},
-        {"clusters", prom_stage_clusters},
-        {"model", prom_stage_model},
+        {"import", stage_import, hash_import},
+        {"device", open_device, NULL}, // after import, whose child must not inherit it
+        {"objects", stage_objects, hash_objects},
+        {"tree", stage_tree, hash_tree},
+        {"textures", prom_stage_textures, hash_textures},
+        {"levels", prom_stage_levels, hash_levels},
+        {"leaves", prom_stage_leaves, hash_reps},
+        {"clusters", prom_stage_clusters, hash_clusters},
+        {"model", prom_stage_model, NULL},
     };
+    uint64_t hash = 0;
+    b->scene_path = scene;
     for (size_t i = 0; i < sizeof stages / sizeof *stages; i++) {
         double start = prom_clock_ms();
-        prom_status status =
-            stages[i].run ? stages[i].run(b, error) : stage_import(b, scene, error);
-        // The device comes after import: the import child must not inherit it.
-        if (!status && !stages[i].run) status = open_device(b, error);
+        prom_status status = stages[i].run(b, error);
         if (status) return status;
+        if (stages[i].hash) hash = stages[i].hash(b, hash);
         double ms = prom_clock_ms() - start;
         prom_log(PROM_LOG_DEBUG, "stage %s: %.0f ms", stages[i].name, ms);
-        status = prom_writer_add_stage(b->writer, stages[i].name, content_so_far(b), ms, error);
+        status = prom_writer_add_stage(b->writer, stages[i].name, hash, ms, error);
         if (status) return status;
     }
     prom_log(PROM_LOG_INFO, "meshes left out because they leave gaps: %u; kept: %zu",
              b->open_reps, b->reps.count);
-    return record_settings(b, scene, error);
+    prom_status status = record_profile(b, error);
+    return status ? status : record_settings(b, scene, error);
 }
 
 static void fill_report(const prom_build_state *b, const char *path, prom_build_report *report)
@@ -142,7 +207,6 @@ static void fill_report(const prom_build_state *b, const char *path, prom_build_
         .prototypes = m->prototype_count,
         .nodes = m->node_count,
         .representations = m->rep_count,
-        .content_hash = content_so_far(b),
     };
     for (uint32_t i = 0; i < m->tree_count; i++)
         if (m->child_count[i] > report->max_children) report->max_children = m->child_count[i];
@@ -156,6 +220,23 @@ static void fill_report(const prom_build_state *b, const char *path, prom_build_
     while (f && fgets(line, sizeof line, f))
         if (sscanf(line, "VmHWM: %llu kB", &kib) == 1) report->peak_bytes = kib * 1024;
     if (f) fclose(f);
+    struct rusage import; // the loader's own memory counts
+    if (getrusage(RUSAGE_CHILDREN, &import) == 0 &&
+        (uint64_t)import.ru_maxrss * 1024 > report->peak_bytes)
+        report->peak_bytes = (uint64_t)import.ru_maxrss * 1024;
+}
+
+// The options with every default put in, so that the model records what was done.
+static prom_build_options resolved(const prom_build_options *options)
+{
+    prom_build_options o = *options;
+    if (!o.import.max_texture_px) o.import.max_texture_px = 1024;
+    if (!o.objects.max_triangles) o.objects.max_triangles = 4096;
+    if (!o.objects.min_triangles)
+        o.objects.min_triangles = o.objects.max_triangles < 256 ? o.objects.max_triangles : 256;
+    if (!o.tree.max_children) o.tree.max_children = 16;
+    if (!o.texture_mb) o.texture_mb = 256;
+    return o;
 }
 
 static void finish_state(prom_build_state *b)
@@ -198,7 +279,8 @@ prom_status prom_build(const char *scene_path, const char *out_path,
                        const prom_build_options *options, prom_build_report *report,
                        prom_error *error)
 {
-    prom_build_state b = {.options = options};
+    const prom_build_options all = resolved(options);
+    prom_build_state b = {.options = &all};
     prom_error local;
     if (!error) error = &local;
     prom_status status = PROM_OK;

@@ -11,14 +11,13 @@ typedef struct prom_build_options {
     prom_object_options objects;
     prom_tree_options tree;
     uint32_t texture_mb; // bytes of impostor pictures on the device, in MiB; 0: 256
-    const char *profile; // cost profile whose hash goes into the content; NULL: none
+    const char *profile; // cost profile that the content names; NULL: none
 } prom_build_options;
 
 typedef struct prom_build_report {
     uint64_t source_triangles; // instanced
     uint32_t objects, prototypes, nodes, max_children, representations;
     uint64_t file_bytes, peak_bytes;
-    uint64_t content_hash;
 } prom_build_report;
 
 // Builds scene_path into out_path. Nothing is left behind on failure.

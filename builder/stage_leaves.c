@@ -214,7 +214,7 @@ static void plan_boxes(prom_build_state *b)
                                                (uint32_t)(shape_count + i)});
     }
     if (list.count) qsort(list.data, list.count, sizeof *list.data, by_value);
-    double left = (b->options->texture_mb ? b->options->texture_mb : 256) * 1048576.0;
+    double left = (b->options->texture_mb) * 1048576.0;
     size_t refused = 0;
     for (size_t i = 0; i < list.count; i++) {
         double bytes = list.data[i].index < shape_count ? shape_bytes : cluster_bytes;
@@ -233,6 +233,7 @@ static void plan_boxes(prom_build_state *b)
 prom_status prom_stage_leaves(prom_build_state *b, prom_error *error)
 {
     plan_boxes(b);
+    b->measure = prom_measure_create(b->mean_luminance);
     prom_progress progress;
     prom_progress_begin(&progress, "leaves", b->objects.shapes.count);
     for (uint32_t p = 0; p < b->objects.shapes.count; p++) {
