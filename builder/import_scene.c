@@ -3,6 +3,7 @@
 #include <assimp/GltfMaterial.h>
 #include <assimp/cimport.h>
 #include <assimp/postprocess.h>
+#include <pthread.h>
 #include <stdarg.h>
 #include <strings.h>
 
@@ -11,9 +12,13 @@
 
 void prom_import_doing(prom_import *import, const char *format, ...)
 {
+    static pthread_mutex_t lock =
+        PTHREAD_MUTEX_INITIALIZER; // pictures are decoded side by side
     va_list args;
     va_start(args, format);
+    pthread_mutex_lock(&lock);
     vsnprintf(import->doing, PROM_IMPORT_DOING, format, args);
+    pthread_mutex_unlock(&lock);
     va_end(args);
 }
 
