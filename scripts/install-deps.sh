@@ -10,7 +10,7 @@ build="cmake ninja-build gcc g++ pkg-config libassimp-dev libmeshoptimizer-dev l
        libsqlite3-dev libzstd-dev libxxhash-dev libjansson-dev libcmocka-dev"
 test=""
 demo="jq"
-bench="jq"
+bench="jq imagemagick"
 format="clang-format clang-tidy"
 
 wanted=""
