@@ -5,7 +5,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 #define LEAST_MARGIN 0.08
@@ -34,6 +33,8 @@ prom_status prom_calibration_run(prom_context *context, prom_renderer *renderer,
     if (!status) status = prom_cost_fit(all->data, all->count, model, error);
     if (!status) {
         model->margin = margin_for(noise);
+        model->width = size_px[0];
+        model->height = size_px[1];
         snprintf(model->renderer, sizeof model->renderer, "%s", prom_context_renderer(context));
     }
     prom_timer_destroy(timer);
@@ -41,27 +42,26 @@ prom_status prom_calibration_run(prom_context *context, prom_renderer *renderer,
     return status;
 }
 
-// The model's field may hold a shortened name.
-static bool same_device(const prom_cost_model *model, const char *renderer)
-{
-    return !strncmp(model->renderer, renderer, sizeof model->renderer - 1);
-}
-
 static prom_status load_profile(const char *profile, const char *renderer,
-                                prom_cost_model *model, prom_error *error)
+                                const uint32_t size_px[2], prom_cost_model *model,
+                                prom_error *error)
 {
     prom_status status = prom_cost_load(profile, model, error);
-    if (!status && !same_device(model, renderer))
+    if (status) return status;
+    if (model->width && (model->width != size_px[0] || model->height != size_px[1]))
+        prom_log(PROM_LOG_WARNING, "%s: was measured at %ux%u, this is %ux%u; times may be off",
+                 profile, model->width, model->height, size_px[0], size_px[1]);
+    if (!prom_cost_is_of(model, renderer))
         prom_log(PROM_LOG_WARNING, "%s: was measured on `%s`, this is `%s`; times may be off",
                  profile, model->renderer, renderer);
-    return status;
+    return PROM_OK;
 }
 
 static bool load_cached(const char *path, const char *renderer, prom_cost_model *model)
 {
     if (!path || access(path, F_OK) != 0) return false;
     prom_error error = {0};
-    if (prom_cost_load(path, model, &error) == PROM_OK && same_device(model, renderer))
+    if (prom_cost_load(path, model, &error) == PROM_OK && prom_cost_is_of(model, renderer))
         return true;
     if (error.status) prom_log(PROM_LOG_WARNING, "%s; measuring the device again", error.text);
     return false;
@@ -87,15 +87,17 @@ static prom_status measure_and_keep(prom_context *context, prom_renderer *render
 }
 
 prom_status prom_calibration_get(prom_context *context, prom_renderer *renderer,
-                                 const char *profile, const uint32_t size_px[2],
+                                 const char *profile, const uint32_t size_px[2], bool measure,
                                  prom_cost_model *model, prom_error *error)
 {
     const char *name = prom_context_renderer(context);
-    if (profile) return load_profile(profile, name, model, error);
+    if (profile) return load_profile(profile, name, size_px, model, error);
     char *path = prom_cost_cache_path(name, size_px[0], size_px[1]);
     prom_status status = PROM_OK;
-    if (!load_cached(path, name, model))
-        status = measure_and_keep(context, renderer, size_px, path, model, error);
+    if (!load_cached(path, name, model)) {
+        *model = (prom_cost_model){0};
+        if (measure) status = measure_and_keep(context, renderer, size_px, path, model, error);
+    }
     prom_free(path);
     return status;
 }

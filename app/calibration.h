@@ -14,9 +14,10 @@ prom_status prom_calibration_run(prom_context *context, prom_renderer *renderer,
                                  prom_cost_samples *samples, bool *queries, prom_error *error);
 
 // The cost model for this device and resolution: `profile` if given; else the cache; else
-// calibrates once and stores that in the cache, saying so.
+// calibrates once and stores that in the cache, saying so, or with `measure` false leaves
+// *model {0}, which has no samples.
 prom_status prom_calibration_get(prom_context *context, prom_renderer *renderer,
-                                 const char *profile, const uint32_t size_px[2],
+                                 const char *profile, const uint32_t size_px[2], bool measure,
                                  prom_cost_model *model, prom_error *error);
 
 #endif

@@ -5,8 +5,6 @@
 
 #include "metaobj/base/log.h"
 
-#include <string.h>
-
 #define DEFAULT_BUDGET_MS 33.0
 #define AUTO_FRAMES 300
 
@@ -107,9 +105,8 @@ static const struct argp argp = {
 
 static bool heeds_budget(const char *selector)
 {
-    for (size_t i = 0; i < prom_selector_count(); i++)
-        if (!strcmp(prom_selector_at(i)->name, selector)) return prom_selector_at(i)->budgeted;
-    return false;
+    const prom_selector_class *class = prom_selector_class_named(selector);
+    return class && class->budgeted;
 }
 
 static void warn_infeasible(const bench_options *o, const prom_loop_result *result)
@@ -155,11 +152,14 @@ prom_status prom_command_bench(int argc, char **argv, prom_error *error)
     bench_options o = {.view = prom_view_options_default,
                        .loop = {.warmup = 30, .keep_every = 30}};
     argp_parse(&argp, argc, argv, 0, NULL, &o);
-    o.loop.selector = o.view.selector ? o.view.selector : "greedy";
-    o.loop.budget_ms = o.view.budget_ms > 0 ? o.view.budget_ms : DEFAULT_BUDGET_MS;
+    if (!o.view.selector) o.view.selector = "greedy";
+    if (!(o.view.budget_ms > 0)) o.view.budget_ms = DEFAULT_BUDGET_MS;
+    o.loop.selector = o.view.selector;
+    o.loop.budget_ms = o.view.budget_ms;
     o.loop.distance_scale = o.view.distance_scale;
-    prom_status status = prom_output_check(o.report, error);
-    if (!status) status = prom_output_check(o.csv, error);
+    prom_command_files files = {{o.model, prom_view_path_file(&o.view), o.view.profile},
+                                {&o.report, &o.csv}};
+    prom_status status = prom_outputs_check(&files, error);
     if (status) return status;
     prom_session session;
     status = prom_session_open(&session, o.model, &o.view, true,

@@ -5,11 +5,15 @@
 
 #include "builder/pipeline.h"
 #include "metaobj/base/clock.h"
+#include "traverse/cost.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+
+// The defaults of the builder (builder/objects.h).
+enum { MIN_TRIANGLES = 256, MAX_TRIANGLES = 4096 };
 
 typedef struct build_options {
     prom_build_options build;
@@ -149,6 +153,19 @@ static void check_tree(const prom_tree_options *tree, const struct argp_state *s
     if (strict && tree->max_children) argp_error(state, "--max-children is for --octree loose");
 }
 
+// Only one given: the other's default must not stand in its way.
+static void check_objects(prom_object_options *objects, const struct argp_state *state)
+{
+    uint32_t most = objects->max_triangles, least = objects->min_triangles;
+    if (most && least > most)
+        argp_error(state,
+                   "--min-object-triangles %" PRIu32 " is more than --max-object-triangles "
+                   "%" PRIu32,
+                   least, most);
+    if (most && !least) objects->min_triangles = most < MIN_TRIANGLES ? most : MIN_TRIANGLES;
+    if (least && !most) objects->max_triangles = least > MAX_TRIANGLES ? least : MAX_TRIANGLES;
+}
+
 static error_t parse(int key, char *text, struct argp_state *state)
 {
     build_options *o = state->input;
@@ -170,6 +187,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
         prom_option_require(state, "the scene's file", o->scene);
         prom_option_require(state, "--output", o->output);
         check_tree(&o->build.tree, state);
+        check_objects(&o->build.objects, state);
         break;
     default:
         return parse_tree(o, key, text, state);
@@ -188,18 +206,23 @@ static const struct argp argp = {
     .children = children,
 };
 
-static prom_status check_files(const build_options *o, prom_error *error)
+// A profile that cannot be used is to be known now, not after the build.
+static prom_status check_profile(const char *profile, prom_error *error)
 {
-    struct stat scene, output;
+    prom_cost_model unused;
+    return profile ? prom_cost_load(profile, &unused, error) : PROM_OK;
+}
+
+static prom_status check_files(build_options *o, prom_error *error)
+{
+    struct stat scene;
     if (stat(o->scene, &scene) != 0)
         return prom_fail(error, PROM_ERR_INPUT, "%s: cannot be read: %m", o->scene);
     if (!S_ISREG(scene.st_mode))
         return prom_fail(error, PROM_ERR_INPUT, "%s: is not a file", o->scene);
-    if (stat(o->output, &output) == 0 && output.st_dev == scene.st_dev &&
-        output.st_ino == scene.st_ino)
-        return prom_fail(error, PROM_ERR_USAGE,
-                         "%s: is the scene itself; give --output another name", o->output);
-    return prom_output_check(o->output, error);
+    prom_command_files files = {{o->scene, o->build.profile}, {&o->output}};
+    prom_status status = prom_outputs_check(&files, error);
+    return status ? status : check_profile(o->build.profile, error);
 }
 
 static void print_report(const build_options *o, const prom_build_report *r, double seconds)

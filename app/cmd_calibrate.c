@@ -104,7 +104,8 @@ prom_status prom_command_calibrate(int argc, char **argv, prom_error *error)
 {
     calibrate_options o = {.size_px = {1280, 720}, .effort = 2};
     argp_parse(&argp, argc, argv, 0, NULL, &o);
-    prom_status status = prom_output_check(o.output, error);
+    prom_command_files files = {.outputs = {&o.output}};
+    prom_status status = prom_outputs_check(&files, error);
     if (status) return status;
     prom_cost_model model = {0};
     bool queries = false;

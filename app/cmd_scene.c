@@ -77,8 +77,8 @@ static prom_status run_city(int argc, char **argv, prom_error *error)
 {
     city_options o = {.city = {.seed = 1}};
     argp_parse(&city_argp, argc, argv, 0, NULL, &o);
-    prom_status status = prom_output_check(o.output, error);
-    if (!status) status = prom_output_check(o.path, error);
+    prom_command_files files = {.outputs = {&o.output, &o.path}};
+    prom_status status = prom_outputs_check(&files, error);
     uint64_t triangles = 0;
     if (!status) status = prom_city_write(o.output, o.path, &o.city, &triangles, error);
     if (status) return status;
@@ -153,7 +153,8 @@ static prom_status run_tile(int argc, char **argv, prom_error *error)
 {
     tile_options o = {0};
     argp_parse(&tile_argp, argc, argv, 0, NULL, &o);
-    prom_status status = prom_output_check(o.output, error);
+    prom_command_files files = {{o.scene}, {&o.output}};
+    prom_status status = prom_outputs_check(&files, error);
     if (!status) status = prom_tile_write(o.scene, o.output, &o.tile, error);
     if (status) return status;
     struct stat st = {0};

@@ -100,11 +100,18 @@ static const struct argp argp = {
     .children = children,
 };
 
+static prom_status check_frame(const shot_options *o, const prom_path *path, prom_error *error)
+{
+    if (o->has_eye || o->frame < path->keys.count) return PROM_OK;
+    return prom_fail(error, PROM_ERR_USAGE,
+                     "--frame %llu: the path has %zu frames, numbered from 0",
+                     (unsigned long long)o->frame, path->keys.count);
+}
+
 static prom_status draw(const shot_options *o, prom_session *session, prom_error *error)
 {
     bool budgeted = o->view.budget_ms > 0;
-    const char *name = o->view.selector ? o->view.selector : budgeted ? "greedy" : "full";
-    prom_selector *selector = prom_selector_create(name, &session->model, error);
+    prom_selector *selector = prom_selector_create(o->view.selector, &session->model, error);
     if (!selector) return error->status;
 
     prom_camera camera = session->camera;
@@ -121,14 +128,18 @@ static prom_status draw(const shot_options *o, prom_session *session, prom_error
     prom_session_select(session, selector, &camera, allowed, o->view.distance_scale, &cut);
     prom_session_draw(session, &cut, &camera, &o->draw);
     prom_draw_stats stats = prom_renderer_take_stats(session->renderer);
-    if (cut.cmin_ms > allowed)
+    bool heeds = prom_selector_class_named(o->view.selector)->budgeted;
+    if (heeds && cut.cmin_ms > allowed)
         prom_log(PROM_LOG_WARNING,
                  "budget %g ms: even the cheapest cut is predicted at %.1f ms of drawing",
                  o->view.budget_ms, cut.cmin_ms);
     prom_status status = prom_session_write_png(session, o->output, error);
-    if (!status)
-        printf("%s: %s, %llu triangles in %zu nodes, predicted %.1f ms\n", o->output, name,
-               (unsigned long long)stats.triangles, cut.entries.count, cut.predicted_ms);
+    if (!status) {
+        printf("%s: %s, %llu triangles in %zu nodes", o->output, o->view.selector,
+               (unsigned long long)stats.triangles, cut.entries.count);
+        if (session->cost.sample_count) printf(", predicted %.1f ms", cut.predicted_ms);
+        putchar('\n');
+    }
     prom_cut_finish(&cut);
     prom_selector_destroy(selector);
     return status;
@@ -138,12 +149,16 @@ prom_status prom_command_shot(int argc, char **argv, prom_error *error)
 {
     shot_options o = {.view = prom_view_options_default};
     argp_parse(&argp, argc, argv, 0, NULL, &o);
-    prom_status status = prom_output_check(o.output, error);
+    if (!o.view.selector) o.view.selector = o.view.budget_ms > 0 ? "greedy" : "full";
+    prom_command_files files = {{o.model, prom_view_path_file(&o.view), o.view.profile},
+                                {&o.output}};
+    prom_status status = prom_outputs_check(&files, error);
     if (status) return status;
     prom_session session;
     status = prom_session_open(&session, o.model, &o.view, !o.has_eye, AUTO_FRAMES, error);
     if (status) return status;
-    status = draw(&o, &session, error);
+    status = check_frame(&o, &session.path, error);
+    if (!status) status = draw(&o, &session, error);
     prom_session_close(&session);
     return status;
 }

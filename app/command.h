@@ -22,8 +22,8 @@ typedef struct prom_command {
 } prom_command;
 
 // Runs the command that argv[1] names, with argv[0] joined to it. `prefix` is how the list of
-// commands is called ("promenade", "promenade scene"). Without argv[1], or with --help, prints
-// the list (exit code 0); an unknown name is a usage error.
+// commands is called ("promenade", "promenade scene"). With --help prints the list (exit
+// code 0); without argv[1] prints it to stderr, a usage error like an unknown name.
 prom_status prom_command_dispatch(const char *prefix, const prom_command *commands,
                                   unsigned count, int argc, char **argv, prom_error *error);
 

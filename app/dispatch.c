@@ -5,15 +5,16 @@
 #include <stdio.h>
 #include <string.h>
 
-static void print_list(const char *prefix, const prom_command *commands, unsigned count)
+static void print_list(FILE *to, const char *prefix, const prom_command *commands,
+                       unsigned count)
 {
-    printf("Usage: %s COMMAND [OPTION...]\n\nCommands:\n", prefix);
+    fprintf(to, "Usage: %s COMMAND [OPTION...]\n\nCommands:\n", prefix);
     for (unsigned i = 0; i < count; i++) {
         char usage[64];
         snprintf(usage, sizeof usage, "%s %s", commands[i].name, commands[i].arguments);
-        printf("  %-24s %s\n", usage, commands[i].summary);
+        fprintf(to, "  %-24s %s\n", usage, commands[i].summary);
     }
-    printf("\n`%s COMMAND --help` lists the options of a command.\n", prefix);
+    fprintf(to, "\n`%s COMMAND --help` lists the options of a command.\n", prefix);
 }
 
 static const prom_command *find(const prom_command *commands, unsigned count, const char *name)
@@ -36,8 +37,12 @@ static prom_status run(const char *prefix, const prom_command *command, int argc
 prom_status prom_command_dispatch(const char *prefix, const prom_command *commands,
                                   unsigned count, int argc, char **argv, prom_error *error)
 {
-    if (argc < 2 || !strcmp(argv[1], "--help") || !strcmp(argv[1], "help")) {
-        print_list(prefix, commands, count);
+    if (argc < 2) {
+        print_list(stderr, prefix, commands, count);
+        return prom_fail(error, PROM_ERR_USAGE, "%s: which command?", prefix);
+    }
+    if (!strcmp(argv[1], "--help") || !strcmp(argv[1], "help")) {
+        print_list(stdout, prefix, commands, count);
         return PROM_OK;
     }
     if (!strcmp(argv[1], "--version")) {

@@ -106,6 +106,11 @@ const struct argp prom_argp_log = {.options = log_options, .parser = parse_log};
 const prom_view_options prom_view_options_default = {
     .distance_scale = 1, .fov_degrees = 60, .size_px = {1280, 720}};
 
+const char *prom_view_path_file(const prom_view_options *view)
+{
+    return view->path && strcmp(view->path, "auto") != 0 ? view->path : NULL;
+}
+
 enum {
     KEY_PATH = 0x2000,
     KEY_BUDGET,
@@ -133,8 +138,7 @@ static const struct argp_option view_options[] = {
 
 static const char *known_selector(const struct argp_state *state, const char *name)
 {
-    for (size_t i = 0; i < prom_selector_count(); i++)
-        if (!strcmp(prom_selector_at(i)->name, name)) return name;
+    if (prom_selector_class_named(name)) return name;
     char names[256] = "";
     for (size_t i = 0; i < prom_selector_count(); i++) {
         if (i) strncat(names, ", ", sizeof names - strlen(names) - 1);

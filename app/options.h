@@ -41,6 +41,9 @@ typedef struct prom_view_options {
     uint32_t size_px[2];
 } prom_view_options;
 
+// The path's file; NULL for an automatic one.
+const char *prom_view_path_file(const prom_view_options *view);
+
 extern const prom_view_options prom_view_options_default;
 extern const struct argp prom_argp_view;
 

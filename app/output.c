@@ -13,12 +13,70 @@
 // Reals keep what a person may want to see, not all 17 digits.
 #define JSON_FLAGS (JSON_INDENT(2) | JSON_REAL_PRECISION(9))
 
-prom_status prom_output_check(const char *path, prom_error *error)
+// What outputs that are links lead to, for the rest of the program, like argv.
+static char *link_targets[PROM_FILES_MAX];
+
+// Whether two names mean one file. A file that is not there yet is known by its folder and
+// name.
+static bool same_file(const char *a, const char *b)
 {
-    if (!path) return PROM_OK;
+    struct stat sa, sb;
+    bool there[2] = {stat(a, &sa) == 0, stat(b, &sb) == 0};
+    if (there[0] != there[1]) return false;
+    if (there[0]) return sa.st_dev == sb.st_dev && sa.st_ino == sb.st_ino;
+    const char *slash[2] = {strrchr(a, '/'), strrchr(b, '/')};
+    if (strcmp(slash[0] ? slash[0] + 1 : a, slash[1] ? slash[1] + 1 : b) != 0) return false;
+    char *folders[2] = {
+        slash[0] ? prom_format("%.*s/", (int)(slash[0] - a), a) : prom_strdup("."),
+        slash[1] ? prom_format("%.*s/", (int)(slash[1] - b), b) : prom_strdup("."),
+    };
+    bool same = stat(folders[0], &sa) == 0 && stat(folders[1], &sb) == 0 &&
+                sa.st_dev == sb.st_dev && sa.st_ino == sb.st_ino;
+    prom_free(folders[0]);
+    prom_free(folders[1]);
+    return same;
+}
+
+static prom_status check_distinct(const prom_command_files *files, prom_error *error)
+{
+    for (int i = 0; i < PROM_FILES_MAX; i++) {
+        if (!files->outputs[i] || !*files->outputs[i]) continue;
+        const char *output = *files->outputs[i];
+        for (int k = 0; k < PROM_FILES_MAX; k++) {
+            if (files->inputs[k] && same_file(output, files->inputs[k]))
+                return prom_fail(error, PROM_ERR_USAGE,
+                                 "%s: is also an input; give the output another name", output);
+            if (k < i && files->outputs[k] && *files->outputs[k] &&
+                same_file(output, *files->outputs[k]))
+                return prom_fail(error, PROM_ERR_USAGE,
+                                 "%s: is named for two outputs; give one another name", output);
+        }
+    }
+    return PROM_OK;
+}
+
+static prom_status follow_link(const char **path, char **kept, prom_error *error)
+{
     struct stat st;
-    if (stat(path, &st) == 0 && S_ISDIR(st.st_mode))
+    if (lstat(*path, &st) != 0 || !S_ISLNK(st.st_mode)) return PROM_OK;
+    char *target = realpath(*path, NULL); // of malloc: free
+    if (!target)
+        return prom_fail(error, PROM_ERR_OUTPUT, "%s: is a link that leads nowhere: %s", *path,
+                         strerror(errno));
+    free(*kept);
+    *path = *kept = target;
+    return PROM_OK;
+}
+
+static prom_status check_writable(const char *path, prom_error *error)
+{
+    struct stat st;
+    bool there = stat(path, &st) == 0;
+    if (there && S_ISDIR(st.st_mode))
         return prom_fail(error, PROM_ERR_OUTPUT, "%s: is a folder; name a file", path);
+    if (there && !S_ISREG(st.st_mode))
+        return prom_fail(error, PROM_ERR_OUTPUT,
+                         "%s: is no regular file; outputs replace a file as a whole", path);
     // Only making a file tells for sure: permissions, read-only and full file systems.
     char *probe = prom_format("%s.XXXXXX", path);
     int file = mkstemp(probe);
@@ -31,6 +89,17 @@ prom_status prom_output_check(const char *path, prom_error *error)
     if (file >= 0) return PROM_OK;
     return prom_fail(error, PROM_ERR_OUTPUT, "%s: cannot be written: %s", path,
                      strerror(reason));
+}
+
+prom_status prom_outputs_check(const prom_command_files *files, prom_error *error)
+{
+    prom_status status = check_distinct(files, error);
+    for (int i = 0; i < PROM_FILES_MAX && !status; i++) {
+        if (!files->outputs[i] || !*files->outputs[i]) continue;
+        status = follow_link(files->outputs[i], &link_targets[i], error);
+        if (!status) status = check_writable(*files->outputs[i], error);
+    }
+    return status;
 }
 
 prom_status prom_output_make_folder(const char *path, prom_error *error)

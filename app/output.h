@@ -7,11 +7,22 @@
 #include <jansson.h>
 #include <stddef.h>
 
-// PROM_ERR_OUTPUT unless a file can be written there. NULL is allowed and fine. Leaves nothing.
-prom_status prom_output_check(const char *path, prom_error *error);
+enum { PROM_FILES_MAX = 4 };
+
+// The files that a command names. NULL: not given.
+typedef struct prom_command_files {
+    const char *inputs[PROM_FILES_MAX];
+    const char **outputs[PROM_FILES_MAX]; // the options themselves, see below
+} prom_command_files;
+
+// Before the long work: PROM_ERR_USAGE when an output is an input or another output under
+// whatever name, PROM_ERR_OUTPUT unless a regular file can be written there. Leaves nothing.
+// An output that is a symbolic link is replaced by what it leads to, so that renaming a
+// finished file onto it keeps the link; that name lives as long as the program.
+prom_status prom_outputs_check(const prom_command_files *files, prom_error *error);
 // Makes a folder with its parents; fine when it is there already.
 prom_status prom_output_make_folder(const char *path, prom_error *error);
-// Writes PATH.part and renames it.
+// Writes PATH.part and renames it. `path` has been checked.
 prom_status prom_output_write(const char *path, const char *text, size_t bytes,
                               prom_error *error);
 // The same for JSON, indented; takes the reference to `json`, also on failure.

@@ -46,6 +46,12 @@ static void set_camera(prom_session *s, const prom_view_options *options)
     if (!(s->camera.z_near > 0)) s->camera.z_near = 1e-4f; // a model of a single point
 }
 
+// Whether anything but the prediction depends on the cost model.
+static bool need_cost(const prom_view_options *options)
+{
+    return options->budget_ms > 0 || prom_selector_class_named(options->selector)->uses_cost;
+}
+
 static prom_status open_all(prom_session *s, const char *model_path,
                             const prom_view_options *options, bool with_path,
                             uint32_t path_frames, prom_error *error)
@@ -57,7 +63,7 @@ static prom_status open_all(prom_session *s, const char *model_path,
     if (status) return status;
     double before = prom_clock_ms();
     status = prom_calibration_get(s->context, s->renderer, options->profile, options->size_px,
-                                  &s->cost, error);
+                                  need_cost(options), &s->cost, error);
     if (status) return status;
     double calibrated = prom_clock_ms();
     status = prom_renderer_load(s->renderer, s->container, &s->model, error);

@@ -19,15 +19,15 @@ typedef struct prom_session {
     prom_renderer *renderer;
     prom_draw_list *list;
     prom_target *target;
-    prom_cost_model cost;
+    prom_cost_model cost; // {0} when nothing is known and neither budget nor selector needs it
     prom_path path;
     prom_camera camera;   // all but the pose is set
     double start_s;       // opening, loading and warming, without calibration
     double calibration_s; // 0 when a profile was at hand
 } prom_session;
 
-// Opens everything, or nothing: on failure *session is {0}. `path_frames` is the length of an
-// automatic path; with_path false leaves the path empty.
+// Opens everything, or nothing: on failure *session is {0}. options->selector must be set.
+// `path_frames` is the length of an automatic path; with_path false leaves the path empty.
 prom_status prom_session_open(prom_session *session, const char *model_path,
                               const prom_view_options *options, bool with_path,
                               uint32_t path_frames, prom_error *error);

@@ -19,11 +19,11 @@ typedef struct prom_cut_entry {
 // Exactly one entry on every root-to-leaf path whose leaf is in the frustum.
 typedef struct prom_cut {
     PROM_ARRAY(prom_cut_entry) entries; // the array keeps its memory from frame to frame
-    double predicted_ms;   // fixed part + all entries, before the correction factor
-    double cmin_ms;        // the same for the cheapest cut
-    double benefit, loss;  // weighted pixels shown right, and wrong (DESIGN: benefit)
-    bool feasible;         // predicted_ms is within the budget that the selector was given
-    uint32_t nodes_visited;
+    double predicted_ms;    // fixed part + all entries, before the correction factor
+    double cmin_ms;         // the same for the cheapest cut
+    double benefit, loss;   // weighted pixels shown right, and wrong (DESIGN: benefit)
+    bool feasible;          // predicted_ms is within the budget that the selector was given
+    uint32_t nodes_visited; // in the frustum, the work of the selection: for benchmarks
 } prom_cut;
 
 void prom_cut_finish(prom_cut *cut);

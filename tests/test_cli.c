@@ -9,6 +9,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <sys/stat.h>
 
 #include <cmocka.h>
 
@@ -42,11 +43,11 @@ static void help_goes_to_stdout(void **state)
     }
 }
 
-static void alone_it_lists_the_commands(void **state)
+static void help_lists_the_commands(void **state)
 {
     (void)state;
-    const char *const ways[] = {"", "--help", "help"};
-    for (int w = 0; w < 3; w++) {
+    const char *const ways[] = {"--help", "help"};
+    for (int w = 0; w < 2; w++) {
         expect(ways[w], 0);
         assert_string_equal(run.err, "");
         for (int i = 0; commands[i]; i++) {
@@ -55,10 +56,22 @@ static void alone_it_lists_the_commands(void **state)
             assert_non_null(strstr(run.out, word));
         }
     }
-    expect("scene", 0);
+    expect("scene --help", 0);
     assert_non_null(strstr(run.out, "city"));
     expect("--version", 0);
     assert_string_equal(run.out, "promenade " PROM_VERSION "\n");
+}
+
+static void without_a_command_the_list_is_an_error(void **state)
+{
+    (void)state;
+    expect("", 1);
+    assert_string_equal(run.out, "");
+    assert_non_null(strstr(run.err, "Usage: promenade"));
+    assert_non_null(strstr(run.err, "bench"));
+    expect("scene", 1);
+    assert_string_equal(run.out, "");
+    assert_non_null(strstr(run.err, "city"));
 }
 
 // Each wrong in one way; the second column must be in the message.
@@ -80,6 +93,7 @@ static const char *const wrong[][2] = {
     {"build a.glb -o a.prom --texture-mb -1", "--texture-mb"},
     {"build a.glb -o a.prom --texture-mb 1x", "1x"},
     {"build a.glb -o a.prom --max-object-triangles 99999999999999999999", "9999"},
+    {"build a.glb -o a.prom --max-object-triangles 100 --min-object-triangles 101", "101"},
     {"build a.glb -o a.prom --chunk-size nan", "nan"},
     {"build a.glb -o a.prom --chunk-size inf", "inf"},
     {"shot a.prom", "--output"},
@@ -179,26 +193,86 @@ static void unwritable_outputs_exit_4_and_are_named(void **state)
     for (int i = 0; inputs[i]; i++) unlink(inputs[i]);
 }
 
-static void the_scene_is_not_overwritten(void **state)
+static void inputs_and_outputs_are_different_files(void **state)
 {
     (void)state;
     write_text("a.glb", "scene\n");
+    assert_int_equal(symlink("a.glb", "link.glb"), 0);
+    assert_int_equal(link("a.glb", "twin.glb"), 0);
     expect_error("build a.glb -o ./a.glb", 1, "a.glb");
+    expect_error("build a.glb -o link.glb", 1, "link.glb");
+    expect_error("build a.glb -o twin.glb", 1, "twin.glb");
+    expect_error("build a.glb -o b.prom --profile b.prom", 1, "b.prom"); // not there yet
+    expect_error("build missing.glb -o a.glb --profile a.glb", 2, "missing.glb");
+    expect_error("shot a.glb -o a.glb", 1, "a.glb");
+    expect_error("shot b.prom -o a.glb --path a.glb", 1, "a.glb");
+    expect_error("bench a.glb --report a.glb", 1, "a.glb");
+    expect_error("bench b.prom --profile a.glb --csv a.glb", 1, "a.glb");
+    expect_error("bench b.prom --report r --csv ./r", 1, "r");
+    expect_error("scene tile a.glb --grid 2x2 -o a.glb", 1, "a.glb");
+    expect_error("scene city -o c.glb --path ./c.glb", 1, "c.glb");
     char text[16];
     slurp("a.glb", text, sizeof text);
     assert_string_equal(text, "scene\n");
-    unlink("a.glb");
+    const char *const inputs[] = {"a.glb", "link.glb", "twin.glb", NULL};
+    assert_int_equal(count_others(".", inputs), 0);
+    for (int i = 0; inputs[i]; i++) unlink(inputs[i]);
+}
+
+static void outputs_are_regular_files(void **state)
+{
+    (void)state;
+    assert_int_equal(mkfifo("pipe", 0600), 0);
+    assert_int_equal(symlink("nowhere", "dangling"), 0);
+    expect_error("scene city -o pipe", 4, "pipe");
+    expect_error("scene city -o dangling", 4, "dangling");
+    expect_error("bench b.prom --report /dev/null", 4, "/dev/null");
+    const char *const kept[] = {"pipe", "dangling", NULL};
+    assert_int_equal(count_others(".", kept), 0);
+    for (int i = 0; kept[i]; i++) unlink(kept[i]);
+}
+
+static void a_link_to_an_output_stays_a_link(void **state)
+{
+    (void)state;
+    write_text("real.glb", "old\n");
+    assert_int_equal(symlink("real.glb", "link.glb"), 0);
+    expect("scene city --size 1 --detail 1 -o link.glb", 0);
+    struct stat st;
+    assert_int_equal(lstat("link.glb", &st), 0);
+    assert_true(S_ISLNK(st.st_mode));
+    assert_int_equal(lstat("real.glb", &st), 0);
+    assert_true(S_ISREG(st.st_mode) && st.st_size > 1000);
+    const char *const kept[] = {"real.glb", "link.glb", NULL};
+    assert_int_equal(count_others(".", kept), 0);
+    for (int i = 0; kept[i]; i++) unlink(kept[i]);
+}
+
+static void a_bad_profile_stops_a_build_at_once(void **state)
+{
+    (void)state;
+    write_text("a.glb", "never read\n");
+    write_text("p.json", "{}\n");
+    expect_error("build a.glb -o a.prom --profile p.json", 2, "p.json");
+    expect_error("build a.glb -o a.prom --profile missing.json", 2, "missing.json");
+    const char *const inputs[] = {"a.glb", "p.json", NULL};
+    assert_int_equal(count_others(".", inputs), 0);
+    for (int i = 0; inputs[i]; i++) unlink(inputs[i]);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(help_goes_to_stdout),
-        cmocka_unit_test(alone_it_lists_the_commands),
+        cmocka_unit_test(help_lists_the_commands),
+        cmocka_unit_test(without_a_command_the_list_is_an_error),
         cmocka_unit_test(usage_errors_exit_1_with_a_hint),
         cmocka_unit_test(unusable_inputs_exit_2_and_are_named),
         cmocka_unit_test(unwritable_outputs_exit_4_and_are_named),
-        cmocka_unit_test(the_scene_is_not_overwritten),
+        cmocka_unit_test(inputs_and_outputs_are_different_files),
+        cmocka_unit_test(outputs_are_regular_files),
+        cmocka_unit_test(a_link_to_an_output_stays_a_link),
+        cmocka_unit_test(a_bad_profile_stops_a_build_at_once),
     };
     enter_scratch();
     int failed = cmocka_run_group_tests(tests, NULL, NULL);

@@ -8,19 +8,21 @@
 
 typedef struct prom_cost_model {
     double fixed_ms, draw_ms, vertex_ms, triangle_ms, pixel_ms[PROM_SHADE_COUNT];
-    double overdraw;    // shaded pixels per footprint pixel of a cut; >= 1, 1 when unknown
+    double overdraw;    // factor on all pixels, >= 1; nothing measures it yet: 1. What lies
+                        // behind other things is counted by traverse/evaluate.c
     double mean_error;  // of the fit: mean |predicted/actual - 1|
     double worst_under; // greatest actual/predicted - 1
     double margin;      // part of the budget kept back for noise, from repeats at calibration
     uint32_t sample_count;
+    uint32_t width, height; // of the pictures that were timed; 0: not known
     char renderer[128];
 } prom_cost_model;
 
 // Non-negative least squares with 1/T weights (relative errors). Fails with fewer samples than
 // coefficients (of features that occur at all) or a sample that is not finite. Sets every
 // field: errors are measured on samples that the fit had not seen where there are enough;
-// shading kinds without samples cost what textured pixels do; overdraw 1, margin 0.1 and an
-// empty renderer are for the caller to replace.
+// shading kinds without samples cost what textured pixels do; overdraw 1, margin 0.1, no size
+// and an empty renderer are for the caller to replace.
 prom_status prom_cost_fit(const prom_cost_sample *samples, size_t count, prom_cost_model *model,
                           prom_error *error);
 double prom_cost_predict(const prom_cost_model *model, const prom_cost_features *features);
@@ -29,9 +31,12 @@ double prom_cost_of_rep(const prom_cost_model *model, const prom_representation 
                         double pixels);
 
 // JSON profile files (docs/FORMAT.md). Saving replaces the file at once or not at all. Loading
-// checks every key and number; on failure *model stays as it was.
+// checks every key and number; on failure *model stays as it was. Profiles without a size load.
 prom_status prom_cost_save(const prom_cost_model *model, const char *path, prom_error *error);
 prom_status prom_cost_load(const char *path, prom_cost_model *model, prom_error *error);
+// Whether the model is of this renderer, whose name a profile may hold shortened and with marks
+// in place of what is not ASCII.
+bool prom_cost_is_of(const prom_cost_model *model, const char *renderer);
 // The profile's place for a renderer: $XDG_CACHE_HOME/promenade/<renderer>-<W>x<H>.json (or
 // ~/.cache/...). Makes the folders. Free with prom_free; NULL when there is no home.
 char *prom_cost_cache_path(const char *renderer, uint32_t width, uint32_t height);

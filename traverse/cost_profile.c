@@ -17,6 +17,7 @@
 #define VERSION 1
 #define FILE_BYTES_MAX 65536
 #define OVERDRAW_MAX 64.0
+#define SIDE_MAX 65536
 
 static const char *const shading_keys[PROM_SHADE_COUNT] = {"plain", "textured", "masked",
                                                            "blended", "impostor"};
@@ -50,6 +51,14 @@ static void printable(const char *text, char *out, size_t size)
     out[i] = 0;
 }
 
+bool prom_cost_is_of(const prom_cost_model *model, const char *renderer)
+{
+    char measured[sizeof model->renderer], here[sizeof model->renderer];
+    printable(model->renderer, measured, sizeof measured);
+    printable(renderer, here, sizeof here);
+    return !strcmp(measured, here);
+}
+
 static json_t *to_json(const prom_cost_model *model)
 {
     char renderer[sizeof model->renderer];
@@ -59,6 +68,10 @@ static json_t *to_json(const prom_cost_model *model)
     json_object_set_new(root, "version", json_integer(VERSION));
     json_object_set_new(root, "renderer", json_string(renderer));
     json_object_set_new(root, "sample_count", json_integer(model->sample_count));
+    if (model->width && model->height) {
+        json_object_set_new(root, "width", json_integer(model->width));
+        json_object_set_new(root, "height", json_integer(model->height));
+    }
     for (int i = 0; i < FIELD_COUNT; i++) {
         double value;
         memcpy(&value, (const char *)model + fields[i].offset, sizeof value);
@@ -136,6 +149,21 @@ static bool get_number(const json_t *object, const char *key, double *value)
     return true;
 }
 
+// Both sides or none; counts their keys.
+static bool get_size(const json_t *root, prom_cost_model *model, size_t *keys)
+{
+    const json_t *width = json_object_get(root, "width");
+    const json_t *height = json_object_get(root, "height");
+    if (!width && !height) return true;
+    *keys += 2;
+    if (!json_is_integer(width) || !json_is_integer(height)) return false;
+    json_int_t w = json_integer_value(width), h = json_integer_value(height);
+    if (w < 1 || h < 1 || w > SIDE_MAX || h > SIDE_MAX) return false;
+    model->width = (uint32_t)w;
+    model->height = (uint32_t)h;
+    return true;
+}
+
 // The first key that is missing, of a wrong type or out of range, or NULL.
 static const char *from_json(const json_t *root, prom_cost_model *model)
 {
@@ -160,7 +188,9 @@ static const char *from_json(const json_t *root, prom_cost_model *model)
     for (int k = 0; k < PROM_SHADE_COUNT; k++)
         if (!get_number(pixel, shading_keys[k], &model->pixel_ms[k])) return "pixel_ms";
     // format, version, renderer, sample_count and pixel_ms are the other five.
-    if (json_object_size(root) != FIELD_COUNT + 5) return "a key that nobody knows";
+    size_t keys = FIELD_COUNT + 5;
+    if (!get_size(root, model, &keys)) return "width and height";
+    if (json_object_size(root) != keys) return "a key that nobody knows";
     return model_fault(model);
 }
 

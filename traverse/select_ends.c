@@ -52,6 +52,7 @@ const prom_selector_class prom_select_full = {
 const prom_selector_class prom_select_coarsest = {
     .name = "coarsest",
     .summary = "the cheapest cut that still shows everything",
+    .uses_cost = true,
     .create = create,
     .destroy = destroy,
     .select = select_coarsest,

@@ -202,6 +202,7 @@ const prom_selector_class prom_select_greedy = {
     .name = "greedy",
     .summary = "marginal benefit per cost, from the cheapest cut upwards",
     .budgeted = true,
+    .uses_cost = true,
     .create = create,
     .destroy = destroy,
     .select = select_greedy,

@@ -8,7 +8,8 @@
 //
 // A cluster that has no valid representation is always replaced. Its initial cost is therefore
 // that of its children's initial ones: the time is set aside before anything else is bought,
-// and only the initial cut itself can be over the budget.
+// and only the initial cut itself can be over the budget. It is not the cheapest cut: meta can
+// be over a budget that cut->cmin_ms, the cheapest cut's time, would keep.
 #include "traverse/evaluate.h"
 #include "traverse/heap.h"
 #include "traverse/selectors.h"
@@ -163,10 +164,8 @@ static void select_meta(void *pointer, const prom_selection *selection, prom_cut
     meta_state *state = pointer;
     prom_eval_run(&state->eval, selection, NULL, NULL);
     prom_eval_begin_cut(&state->eval, cut);
-    cut->cmin_ms = state->eval.fixed_ms;
     if (!state->eval.nodes[0].culled) {
         phase_1(state);
-        cut->cmin_ms += state->nodes[0].cost;
         phase_2(state, cut);
     }
     prom_eval_end_cut(&state->eval, cut);
@@ -176,6 +175,7 @@ const prom_selector_class prom_select_meta = {
     .name = "meta",
     .summary = "the classic: two phases, best first by benefit",
     .budgeted = true,
+    .uses_cost = true,
     .create = create,
     .destroy = destroy,
     .select = select_meta,

@@ -26,16 +26,24 @@ const prom_selector_class *prom_selector_at(size_t i)
     return i < CLASS_COUNT ? classes[i] : NULL;
 }
 
+const prom_selector_class *prom_selector_class_named(const char *name)
+{
+    for (size_t i = 0; i < CLASS_COUNT; i++)
+        if (!strcmp(classes[i]->name, name)) return classes[i];
+    return NULL;
+}
+
 prom_selector *prom_selector_create(const char *name, const prom_model *model,
                                     prom_error *error)
 {
+    const prom_selector_class *class = prom_selector_class_named(name);
+    if (class) {
+        prom_selector *selector = prom_alloc(1, sizeof *selector);
+        *selector = (prom_selector){class, class->create(model)};
+        return selector;
+    }
     char list[256] = "";
     for (size_t i = 0, used = 0; i < CLASS_COUNT; i++) {
-        if (!strcmp(classes[i]->name, name)) {
-            prom_selector *selector = prom_alloc(1, sizeof *selector);
-            *selector = (prom_selector){classes[i], classes[i]->create(model)};
-            return selector;
-        }
         int n =
             snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", classes[i]->name);
         used += (size_t)n < sizeof list - used ? (size_t)n : 0;
@@ -49,11 +57,6 @@ void prom_selector_destroy(prom_selector *selector)
     if (!selector) return;
     selector->class->destroy(selector->state);
     prom_free(selector);
-}
-
-const prom_selector_class *prom_selector_class_of(const prom_selector *selector)
-{
-    return selector->class;
 }
 
 void prom_selector_run(prom_selector *selector, const prom_selection *selection, prom_cut *cut)

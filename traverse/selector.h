@@ -22,6 +22,7 @@ typedef struct prom_selector_class {
     const char *name;    // as on the command line
     const char *summary; // one line
     bool budgeted;       // heeds budget_ms
+    bool uses_cost;      // its cut depends on the cost model; else only predicted_ms does
     void *(*create)(const prom_model *model);
     void (*destroy)(void *state);
     void (*select)(void *state, const prom_selection *selection, prom_cut *cut);
@@ -30,17 +31,17 @@ typedef struct prom_selector_class {
 // All selectors, in the order of the help text: meta, greedy, distance, full, coarsest.
 size_t prom_selector_count(void);
 const prom_selector_class *prom_selector_at(size_t i);
+const prom_selector_class *prom_selector_class_named(const char *name); // NULL: unknown
 
 // NULL with PROM_ERR_USAGE and the list of names when `name` is unknown. The model must outlive
 // the selector.
 prom_selector *prom_selector_create(const char *name, const prom_model *model,
                                     prom_error *error);
 void prom_selector_destroy(prom_selector *selector);
-const prom_selector_class *prom_selector_class_of(const prom_selector *selector);
 // Fills *cut (its memory is reused; start with {0}, end with prom_cut_finish). Never allocates
 // once the cut has grown to its size. The fixed part of predicted_ms holds the background
 // layer. cut->cmin_ms is the cost of the cheapest cut of the nodes that the selector went over;
-// `meta`, which knows none, gives that of its initial cut.
+// `meta` starts from another one, and may be over a budget that this would keep.
 void prom_selector_run(prom_selector *selector, const prom_selection *selection, prom_cut *cut);
 
 // NULL if the cut holds exactly one entry on every root-to-leaf path whose leaf is in the
