@@ -2,6 +2,8 @@
 // stages.
 #include "metaobj/container_writer.h"
 
+#include "metaobj/base/log.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
@@ -175,18 +177,19 @@ static prom_status write_row_hashes(prom_writer *w, prom_error *error)
     return PROM_OK;
 }
 
-// The name in the folder must survive a power cut too.
-static prom_status sync_folder(const char *path, prom_error *error)
+// The name in the folder should survive a power cut too. Too late to call the build off: the
+// finished file is in place.
+static void sync_folder(const char *path)
 {
     const char *slash = strrchr(path, '/');
     char *folder = slash ? prom_format("%.*s/", (int)(slash - path), path) : prom_strdup(".");
     int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    prom_status status = PROM_OK;
     // Some file systems cannot sync folders and say EINVAL: nothing more can be done there.
-    if (fd < 0 || (fsync(fd) && errno != EINVAL)) status = fail_errno(error, "sync", folder);
+    if (fd < 0 || (fsync(fd) && errno != EINVAL))
+        prom_log(PROM_LOG_WARNING, "%s: the folder cannot be synced: %s", folder,
+                 strerror(errno));
     if (fd >= 0) close(fd);
     prom_free(folder);
-    return status;
 }
 
 prom_status prom_writer_finish(prom_writer *writer, prom_error *error)
@@ -205,5 +208,6 @@ prom_status prom_writer_finish(prom_writer *writer, prom_error *error)
     if (rename(writer->part_path, writer->path))
         return fail_errno(error, "rename the finished file to", writer->path);
     writer->finished = true;
-    return sync_folder(writer->path, error);
+    sync_folder(writer->path);
+    return PROM_OK;
 }

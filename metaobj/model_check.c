@@ -61,18 +61,29 @@ static const char *check_material(const prom_model *m, const prom_material *mate
     return NULL;
 }
 
+// What the renderer would take for pictures must be some, of the kind that the light asks for.
+static const char *check_pictures(const prom_model *m, const prom_representation *r)
+{
+    if (r->texture != PROM_NONE && r->texture >= m->texture_count)
+        return "a representation's texture is out of range";
+    if (r->kind != PROM_REP_TEXTURED_BOX)
+        return r->texture == PROM_NONE ? NULL : "a mesh or an average-colour box has pictures";
+    if (r->texture == PROM_NONE) return "a textured box has no texture";
+    uint32_t kind = m->textures[r->texture].kind;
+    if (kind == PROM_TEXTURE_COLOR) return "a textured box has no impostor texture";
+    bool unlit = r->flags & PROM_REP_UNLIT;
+    if (unlit != (kind == PROM_TEXTURE_IMPOSTOR_LIT))
+        return "a textured box's pictures hold the light and its flags say no, or the reverse";
+    return NULL;
+}
+
 static const char *check_rep(const prom_model *m, const prom_representation *r)
 {
     if (r->kind >= PROM_REP_KIND_COUNT) return "a representation's kind is unknown";
     if (r->shading >= PROM_SHADE_COUNT) return "a representation's shading is unknown";
     if (r->mesh >= m->mesh_count) return "a representation's mesh is out of range";
-    if (r->texture != PROM_NONE && r->texture >= m->texture_count)
-        return "a representation's texture is out of range";
-    if (r->kind == PROM_REP_TEXTURED_BOX) {
-        if (r->texture == PROM_NONE) return "a textured box has no texture";
-        if (m->textures[r->texture].kind == PROM_TEXTURE_COLOR)
-            return "a textured box has no impostor texture";
-    }
+    const char *wrong = check_pictures(m, r);
+    if (wrong) return wrong;
     if (!(r->error >= 0) || !isfinite(r->error)) return "a representation's error is no length";
     if (!(r->max_size_px > 0)) return "a representation's largest size is not above 0";
     if (!(r->near_k >= 0) || !isfinite(r->near_k))

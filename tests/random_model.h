@@ -67,6 +67,7 @@ static inline void random_add_rep(prom_model *m, uint64_t *seed, prom_rep_kind k
         .kind = kind,
         .mesh = r,
         .texture = kind == PROM_REP_TEXTURED_BOX ? 0 : PROM_NONE,
+        .flags = kind == PROM_REP_TEXTURED_BOX ? PROM_REP_UNLIT : 0,
         .shading = kind == PROM_REP_TEXTURED_BOX ? PROM_SHADE_IMPOSTOR
                                                  : random_below(seed, PROM_SHADE_COUNT),
         .level = level,

@@ -32,10 +32,8 @@ static void bounds_hold_children(void **state)
     assert_null(prom_model_check(m, &row));
     for (uint32_t n = 1; n < m->tree_count; n++) {
         uint32_t p = m->parent[n];
-        double square = 0;
         for (int a = 0; a < 3; a++) {
             double d = fabs(m->center[n][a] - m->center[p][a]);
-            square += d * d;
             assert_true(d + m->half[n][a] <= m->half[p][a] + 1e-9);
         }
         double diagonal = 0;
@@ -61,6 +59,7 @@ static void bounds_hold_children(void **state)
 static void model_check(void **state)
 {
     (void)state;
+    static const prom_texture_info lit_pictures = {PROM_TEXTURE_IMPOSTOR_LIT, 4, 4, 6, 3};
     assert_refused(m->tree_count = 0);
     assert_refused(m->tree_count = m->node_count + 1);
     assert_refused(m->tree_count = m->node_count);     // the backdrop is nobody's child
@@ -99,8 +98,12 @@ static void model_check(void **state)
     assert_refused(m->reps[0].kind = PROM_REP_KIND_COUNT);
     assert_refused(m->reps[0].mesh = m->mesh_count);
     assert_refused(m->reps[0].texture = m->texture_count);
+    assert_refused(m->reps[0].texture = 1); // pictures on a mesh
+    assert_refused(m->reps[1].texture = 1); // on an average-colour box
     assert_refused(m->reps[2].texture = PROM_NONE);
     assert_refused(m->reps[2].texture = 0);
+    assert_refused(m->reps[2].flags ^= PROM_REP_UNLIT);
+    assert_refused(m->textures[1] = lit_pictures);
     assert_refused(m->reps[0].shading = PROM_SHADE_COUNT);
     assert_refused(m->reps[0].error = -1);
     assert_refused(m->reps[0].error = INFINITY);

@@ -19,12 +19,22 @@ typedef struct worker {
     pthread_t thread;
 } worker;
 
-unsigned prom_thread_count(void)
+static pthread_once_t count_once = PTHREAD_ONCE_INIT;
+static unsigned thread_count = 1;
+
+static void count_threads(void)
 {
     cpu_set_t set;
-    if (sched_getaffinity(0, sizeof set, &set)) return 1;
+    if (sched_getaffinity(0, sizeof set, &set)) return;
     int n = CPU_COUNT(&set);
-    return n < 1 ? 1 : n > 64 ? 64 : (unsigned)n;
+    thread_count = n < 1 ? 1 : n > 64 ? 64 : (unsigned)n;
+}
+
+// The affinity may change from outside; scratch memory that callers made per thread may not.
+unsigned prom_thread_count(void)
+{
+    pthread_once(&count_once, count_threads);
+    return thread_count;
 }
 
 static void *work(void *argument)
