@@ -31,6 +31,8 @@ static void mix_tint(const uint8_t from[3], const uint8_t to[3], float t, uint8_
     tint[3] = 255;
 }
 
+// Meshes from dark green (finest) to light, clusters blue, average boxes red, textured boxes
+// orange.
 static void tint_of(const prom_representation *rep, bool cluster, uint8_t tint[4])
 {
     static const uint8_t dark_green[] = {0, 84, 32}, light_green[] = {200, 240, 150},
@@ -45,16 +47,6 @@ static void tint_of(const prom_representation *rep, bool cluster, uint8_t tint[4
         mix_tint(dark_blue, light_blue, coarse, tint);
     else
         mix_tint(dark_green, light_green, coarse, tint);
-}
-
-void prom_rep_tint(const prom_model *model, uint32_t rep, uint8_t tint[4])
-{
-    bool cluster = false;
-    for (uint32_t i = 0; i < model->prototype_count; i++) {
-        const prom_prototype *p = &model->prototypes[i];
-        if (rep - p->first_rep < p->rep_count) cluster = p->flags & PROM_PROTO_CLUSTER;
-    }
-    tint_of(&model->reps[rep], cluster, tint);
 }
 
 // ---- the list

@@ -117,10 +117,6 @@ void prom_renderer_draw_frame(prom_renderer *renderer, prom_draw_list *list,
                               prom_target *target, const prom_model *model, const prom_cut *cut,
                               const prom_camera *camera, const prom_frame_options *options);
 
-// The tint of a representation in false colours: meshes from dark green (finest) to light,
-// clusters blue, average boxes red, textured boxes orange.
-void prom_rep_tint(const prom_model *model, uint32_t rep, uint8_t tint[4]);
-
 // The clear colour where nothing is drawn.
 extern const uint8_t prom_sky_color[4];
 

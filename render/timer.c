@@ -20,7 +20,7 @@ struct prom_timer {
     double start_ms;
 };
 
-// ---- the self-test: see-through layers over a small picture, as many as take a few
+// ---- the self-test: opaque layers, back to front, over a small picture, as many as take a few
 // milliseconds
 
 typedef struct trial {

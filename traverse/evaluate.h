@@ -32,8 +32,8 @@ typedef struct prom_eval_node {
     bool expanded; // its children are evaluated
 } prom_eval_node;
 
-// Whether to go below a cluster that could be drawn by one of its own options (the best
-// accuracy among them is given). Clusters without options are always expanded.
+// Whether to go below a cluster that could be drawn by one of its own options, which stand in
+// the node with their benefits; costs come later. Clusters without options are always expanded.
 typedef bool prom_eval_open(void *user, uint32_t node);
 
 typedef struct prom_eval {

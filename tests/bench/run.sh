@@ -3,18 +3,30 @@
 # built (build.md) and how they walk (table.md). Everything stays in FOLDER.
 #
 # Environment:
-#   SCENES   names to take, of: sponza candela_city black_forest forza candela_city_5x5
-#            black_forest_5x5 furniture city (all that are there)
-#   SHARED   folder with the scenes that are not part of the project (../shared/scenes)
-#   OPTIONS  options for table.sh, such as "-f 300 -F 60"
+#   SCENES       names to take, of: sponza candela_city black_forest forza candela_city_5x5
+#                black_forest_5x5 furniture city (all); one that is not there is skipped
+#   PROM_SHARED  folder whose scenes/ holds those that are not part of the project (../shared)
+#   OPTIONS      options for table.sh, such as "-f 300 -F 60"
 set -eu
 here=$(dirname "$0")
 program=$1
 out=$2
-shared=${SHARED:-../shared/scenes}
-all="sponza candela_city black_forest forza candela_city_5x5 black_forest_5x5 city"
-[ -d "$shared" ] || { all=city; echo "no $shared: only the generated city" >&2; }
+shared=${PROM_SHARED:-../shared}/scenes
+all="sponza candela_city black_forest forza candela_city_5x5 black_forest_5x5 furniture city"
 mkdir -p "$out/models"
+
+# is_there NAME: whether the scene is there or can be made; says so if not.
+is_there() {
+    case $1 in
+    city) return 0 ;;
+    sponza) needed=$shared/sponza/sponza.obj ;;
+    furniture) needed=$shared/furniture-cc0 ;;
+    *) needed=$shared/${1%_5x5}/${1%_5x5}.gltf ;;
+    esac
+    [ -e "$needed" ] && return 0
+    echo "skipped $1: there is no $needed" >&2
+    return 1
+}
 
 # The file of a scene by name; made when it is a generated or repeated one.
 source_of() {
@@ -72,6 +84,7 @@ pairs=""
     echo "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- | ---: | ---: |"
 } > "$out/build.md"
 for name in ${SCENES:-$all}; do
+    is_there "$name" || continue
     if [ "$name" = furniture ]; then
         find "$shared/furniture-cc0" -name '*.obj' | sort > "$out/furniture.txt"
         while read -r file; do
