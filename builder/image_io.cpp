@@ -206,14 +206,14 @@ prom_status decode(const uint8_t *data, size_t bytes, const char *name, uint32_t
     bool from_memory = input->supports("ioproxy") && input->set_ioproxy(&memory);
     std::string file = std::string("picture.") + format, temporary;
     if (!from_memory) { // the few readers that insist on a file get one
-        char path[] = "/tmp/promenade-XXXXXX";
-        int fd = mkstemp(path);
+        std::string path = Filesystem::temp_directory_path() + "/promenade-XXXXXX";
+        int fd = mkstemp(path.data());
         if (fd < 0) return broken(error, name, "no temporary file could be made");
         file = temporary = path;
         bool written = write(fd, data, bytes) == ssize_t(bytes);
         close(fd);
         if (!written) {
-            unlink(path);
+            unlink(path.c_str());
             return broken(error, name, "no temporary file could be written");
         }
     }
