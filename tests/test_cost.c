@@ -218,6 +218,8 @@ static prom_cost_model some_profile(void)
     m.worst_under = 0.186;
     m.margin = 0.1;
     m.sample_count = 260;
+    m.width = 1280;
+    m.height = 720;
     strcpy(m.renderer, "llvmpipe (LLVM 15.0.6, 256 bits)");
     return m;
 }
@@ -236,6 +238,39 @@ static void profiles_come_back_as_they_went(void **state)
     char *command = prom_format("test $(ls -A %s | wc -l) = 1", folder);
     assert_int_equal(system(command), 0);
     prom_free(command);
+}
+
+static void profiles_without_a_size_load(void **state)
+{
+    (void)state;
+    prom_cost_model saved = some_profile(), loaded = {0};
+    prom_error error = {0};
+    saved.width = saved.height = 0;
+    assert_int_equal(prom_cost_save(&saved, path, &error), PROM_OK);
+    assert_int_equal(prom_cost_load(path, &loaded, &error), PROM_OK);
+    assert_int_equal(loaded.width, 0);
+    assert_int_equal(loaded.height, 0);
+}
+
+// A renderer's name survives saving only in part; it must be known again all the same.
+static void profiles_know_their_renderer(void **state)
+{
+    (void)state;
+    char name[201];
+    memset(name, 'x', sizeof name - 1);
+    name[sizeof name - 1] = 0;
+    memcpy(name, "Ger\xc3\xa4t\x01", 7);
+    prom_cost_model m = some_profile();
+    prom_error error = {0};
+    assert_false(prom_cost_is_of(&m, name));
+    assert_true(prom_cost_is_of(&m, m.renderer));
+    snprintf(m.renderer, sizeof m.renderer, "%s", name);
+    assert_true(prom_cost_is_of(&m, name));
+    assert_int_equal(prom_cost_save(&m, path, &error), PROM_OK);
+    assert_int_equal(prom_cost_load(path, &m, &error), PROM_OK);
+    assert_true(prom_cost_is_of(&m, name));
+    name[100] = 'y';
+    assert_false(prom_cost_is_of(&m, name));
 }
 
 static void profiles_that_cannot_be_written(void **state)
@@ -289,6 +324,9 @@ static void broken_profiles_are_refused(void **state)
         {"\"draw_ms\": ", "\"draw_ms\": \"x\", \"y\": "},
         {"\"masked\"", "\"mask\""},
         {"{\n", "{\n\"more\": 1,"},
+        {"\"width\": 1280", "\"width\": 0"},
+        {"\"width\": 1280", "\"width\": 1e3"},
+        {"\"height\"", "\"depth\""},
         {"\"vertex_ms\": ", "\"vertex_ms\": 1e300, \"z\": "},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
@@ -380,6 +418,8 @@ int main(void)
         cmocka_unit_test(kinds_without_samples_cost_what_textures_do),
         cmocka_unit_test(unusable_samples_are_refused),
         cmocka_unit_test(profiles_come_back_as_they_went),
+        cmocka_unit_test(profiles_without_a_size_load),
+        cmocka_unit_test(profiles_know_their_renderer),
         cmocka_unit_test(profiles_that_cannot_be_written),
         cmocka_unit_test(broken_profiles_are_refused),
         cmocka_unit_test(profiles_have_a_place),

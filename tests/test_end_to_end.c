@@ -120,6 +120,38 @@ static void shots_are_written(void **state)
     assert_int_equal(count_others(".", made), 0);
 }
 
+static void shots_end_with_the_path(void **state)
+{
+    (void)state;
+    NEED_DEVICE();
+    expect("shot city.prom --path city.path --frame 599 -o a.png" SMALL, 0);
+    expect("shot city.prom --path city.path --frame 600 -o a.png" SMALL, 1);
+    assert_non_null(strstr(run.err, "600 frames"));
+}
+
+// Full detail needs no cost model, so nothing is measured or kept for it; a budget needs one.
+static void shots_measure_the_device_only_if_needed(void **state)
+{
+    (void)state;
+    NEED_DEVICE();
+    char here[1024], cache[1100];
+    assert_non_null(getcwd(here, sizeof here));
+    snprintf(cache, sizeof cache, "%s/cache", here);
+    assert_int_equal(setenv("XDG_CACHE_HOME", cache, 1), 0);
+    expect("shot city.prom --path city.path --resolution 160,90 -o a.png", 0);
+    assert_null(strstr(run.err, "measuring"));
+    assert_null(strstr(run.out, "predicted"));
+    assert_int_equal(count_others("cache/promenade", NULL), 0);
+    expect("shot city.prom --path city.path --resolution 160,90 --budget-ms 50 -o a.png", 0);
+    assert_non_null(strstr(run.err, "measuring"));
+    expect("shot city.prom --path city.path --resolution 160,90 -o a.png", 0);
+    assert_non_null(strstr(run.out, "predicted"));
+    expect("shot city.prom --resolution 96,96 --profile p.json -o a.png", 0);
+    assert_non_null(strstr(run.err, "160x90"));
+    unsetenv("XDG_CACHE_HOME");
+    remove_tree("cache");
+}
+
 // The keys of a report.
 static const char *const keys[] = {
     "scene",           "path",
@@ -298,6 +330,8 @@ int main(void)
         cmocka_unit_test(the_build_leaves_one_file),
         cmocka_unit_test(info_tells_what_was_built),
         cmocka_unit_test(shots_are_written),
+        cmocka_unit_test(shots_end_with_the_path),
+        cmocka_unit_test(shots_measure_the_device_only_if_needed),
         cmocka_unit_test(bench_reports_every_selector),
         cmocka_unit_test(full_draws_at_least_what_coarsest_draws),
         cmocka_unit_test(an_impossible_budget_is_named),
