@@ -29,7 +29,7 @@ static prom_status open_path(prom_session *s, const char *path, uint32_t frames,
                              prom_error *error)
 {
     if (!path || !strcmp(path, "auto"))
-        return prom_path_auto_in(s->container, &s->model, frames, &s->path, error);
+        return prom_path_auto(s->container, &s->model, frames, &s->path, error);
     return prom_path_load(path, &s->path, error);
 }
 

@@ -240,8 +240,8 @@ static prom_status walk(prom_container *container, const prom_model *model, prom
     return PROM_OK;
 }
 
-static prom_status make(prom_container *container, const prom_model *model, uint32_t frames,
-                        prom_path *path, prom_error *error)
+prom_status prom_path_auto(prom_container *container, const prom_model *model, uint32_t frames,
+                           prom_path *path, prom_error *error)
 {
     prom_layout l;
     prom_status status = PROM_OK;
@@ -258,16 +258,4 @@ static prom_status make(prom_container *container, const prom_model *model, uint
         prom_layout_walk(&l, frames, path);
     prom_layout_finish(&l);
     return status;
-}
-
-prom_status prom_path_auto(const prom_model *model, uint32_t frames, prom_path *path,
-                           prom_error *error)
-{
-    return make(NULL, model, frames, path, error);
-}
-
-prom_status prom_path_auto_in(prom_container *container, const prom_model *model,
-                              uint32_t frames, prom_path *path, prom_error *error)
-{
-    return make(container, model, frames, path, error);
 }

@@ -34,13 +34,10 @@ void prom_path_add(prom_path *path, const double position[3], const double forwa
 void prom_path_pose(const prom_path *path, uint64_t frame, prom_camera *camera);
 // A sensible walk through a model: `frames` keys (at least 1), 30 a second, at eye height
 // through the dense part of the layout, looking ahead, smooth; a round trip that looks at a
-// model of few objects. Deterministic. PROM_ERR_INPUT when the model has no object.
-prom_status prom_path_auto(const prom_model *model, uint32_t frames, prom_path *path,
-                           prom_error *error);
-// The same from the model's geometry, which the container holds: over floors with headroom,
-// such as streets, past walls. Better wherever the ground is not flat or objects are no boxes;
-// takes a second or so.
-prom_status prom_path_auto_in(prom_container *container, const prom_model *model,
-                              uint32_t frames, prom_path *path, prom_error *error);
+// model of few objects. It keeps to floors with headroom, such as streets, and past walls, from
+// the model's geometry in `container`, which takes a second or so; with NULL it knows the
+// objects' boxes only. Deterministic. PROM_ERR_INPUT when the model has no object.
+prom_status prom_path_auto(prom_container *container, const prom_model *model, uint32_t frames,
+                           prom_path *path, prom_error *error);
 
 #endif

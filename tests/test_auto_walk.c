@@ -167,8 +167,8 @@ static void test_walks_on_the_ground(void **unused)
     prom_error error = {0};
     prom_path path, again;
     prom_container *container = open_town(&model);
-    assert_int_equal(prom_path_auto_in(container, &model, 600, &path, &error), PROM_OK);
-    assert_int_equal(prom_path_auto_in(container, &model, 600, &again, &error), PROM_OK);
+    assert_int_equal(prom_path_auto(container, &model, 600, &path, &error), PROM_OK);
+    assert_int_equal(prom_path_auto(container, &model, 600, &again, &error), PROM_OK);
     assert_int_equal(path.keys.count, 600);
     assert_memory_equal(path.keys.data, again.keys.data, 600 * sizeof *path.keys.data);
     double way = 0;

@@ -243,8 +243,8 @@ static void test_auto_stays_in_the_layout(void **unused)
         make_fake(&f, 40 + 50 * (uint32_t)(seed % 11), size, seed);
         prom_path path, again;
         prom_error error = {0};
-        assert_int_equal(prom_path_auto(&f.model, 300, &path, &error), PROM_OK);
-        assert_int_equal(prom_path_auto(&f.model, 300, &again, &error), PROM_OK);
+        assert_int_equal(prom_path_auto(NULL, &f.model, 300, &path, &error), PROM_OK);
+        assert_int_equal(prom_path_auto(NULL, &f.model, 300, &again, &error), PROM_OK);
         assert_int_equal(path.keys.count, 300);
         assert_memory_equal(path.keys.data, again.keys.data, 300 * sizeof *path.keys.data);
         double way = 0, longest = 0;
@@ -281,7 +281,7 @@ static void test_auto_avoids_objects(void **unused)
     }
     prom_path path;
     prom_error error = {0};
-    assert_int_equal(prom_path_auto(&f.model, 600, &path, &error), PROM_OK);
+    assert_int_equal(prom_path_auto(NULL, &f.model, 600, &path, &error), PROM_OK);
     for (size_t k = 0; k < 600; k++) {
         const double *p = path.keys.data[k].position;
         assert_true(fabs(p[1] - 1.7) < 1e-6);
@@ -299,7 +299,7 @@ static void test_auto_circles_a_single_object(void **unused)
     f.center[1][0] = 50;
     prom_path path;
     prom_error error = {0};
-    assert_int_equal(prom_path_auto(&f.model, 90, &path, &error), PROM_OK);
+    assert_int_equal(prom_path_auto(NULL, &f.model, 90, &path, &error), PROM_OK);
     for (size_t k = 0; k < 90; k++) {
         const prom_path_key *key = &path.keys.data[k];
         const float *q = key->orientation;
@@ -323,9 +323,9 @@ static void test_auto_refuses_nothing(void **unused)
     prom_path path;
     prom_error error = {0};
     make_fake(&f, 1, 2, 3);
-    assert_int_equal(prom_path_auto(&f.model, 0, &path, &error), PROM_ERR_USAGE);
+    assert_int_equal(prom_path_auto(NULL, &f.model, 0, &path, &error), PROM_ERR_USAGE);
     f.model.tree_count = 0;
-    assert_int_equal(prom_path_auto(&f.model, 10, &path, &error), PROM_ERR_INPUT);
+    assert_int_equal(prom_path_auto(NULL, &f.model, 10, &path, &error), PROM_ERR_INPUT);
     assert_non_null(strstr(error.text, "no object"));
 }
 
