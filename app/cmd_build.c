@@ -13,7 +13,6 @@
 #include <sys/stat.h>
 
 // The defaults of the builder (builder/objects.h).
-enum { MIN_TRIANGLES = 256, MAX_TRIANGLES = 4096 };
 
 typedef struct build_options {
     prom_build_options build;
@@ -153,8 +152,7 @@ static void check_tree(const prom_tree_options *tree, const struct argp_state *s
     if (strict && tree->max_children) argp_error(state, "--max-children is for --octree loose");
 }
 
-// Only one given: the other's default must not stand in its way.
-static void check_objects(prom_object_options *objects, const struct argp_state *state)
+static void check_objects(const prom_object_options *objects, const struct argp_state *state)
 {
     uint32_t most = objects->max_triangles, least = objects->min_triangles;
     if (most && least > most)
@@ -162,8 +160,6 @@ static void check_objects(prom_object_options *objects, const struct argp_state 
                    "--min-object-triangles %" PRIu32 " is more than --max-object-triangles "
                    "%" PRIu32,
                    least, most);
-    if (most && !least) objects->min_triangles = most < MIN_TRIANGLES ? most : MIN_TRIANGLES;
-    if (least && !most) objects->max_triangles = least > MAX_TRIANGLES ? least : MAX_TRIANGLES;
 }
 
 static error_t parse(int key, char *text, struct argp_state *state)

@@ -94,7 +94,8 @@ static void draft_gltf(const struct aiMaterial *material, draft *d)
         if (!strcmp(mode.data, "MASK")) d->mode = DRAFT_MASK;
         if (!strcmp(mode.data, "BLEND")) d->mode = DRAFT_BLEND;
     }
-    if (aiGetMaterialFloat(material, AI_MATKEY_GLTF_ALPHACUTOFF, &cutoff) == aiReturn_SUCCESS)
+    if (aiGetMaterialFloatArray(material, AI_MATKEY_GLTF_ALPHACUTOFF, &cutoff, NULL) ==
+        aiReturn_SUCCESS)
         d->cutoff = unit(cutoff);
 }
 
@@ -109,7 +110,8 @@ static void draft_other(const struct aiMaterial *material, const prom_import_use
         color[0] = color[1] = color[2] = 1;
     for (int k = 0; k < 3; k++) d->color[k] = prom_srgb_to_linear(color[k]);
     d->mode = DRAFT_GUESS;
-    if (aiGetMaterialFloat(material, AI_MATKEY_OPACITY, &opacity) == aiReturn_SUCCESS)
+    if (aiGetMaterialFloatArray(material, AI_MATKEY_OPACITY, &opacity, NULL) ==
+        aiReturn_SUCCESS)
         d->opacity = unit(opacity);
     // Wholly invisible materials are an exporter's mix-up of opacity and transparency.
     if (d->opacity <= 0) d->opacity = 1;

@@ -3,8 +3,6 @@
 #include "builder/objects_private.h"
 #include "metaobj/base/alloc.h"
 
-enum { MAX_TRIANGLES = 4096, MIN_TRIANGLES = 256 };
-
 // The objects of a group's first member, repeated for the others.
 static void repeat_members(prom_finder *finder, const prom_scope *scope, size_t first)
 {
@@ -88,10 +86,21 @@ static void finish_finder(prom_finder *finder)
     prom_free(finder->kind_shape);
 }
 
+// Only one given: the other's default must not stand in its way.
+prom_object_options prom_object_options_resolved(prom_object_options o)
+{
+    uint32_t most = o.max_triangles, least = o.min_triangles;
+    if (!most)
+        o.max_triangles = least > PROM_OBJECT_TRIANGLES_MAX ? least : PROM_OBJECT_TRIANGLES_MAX;
+    if (!least)
+        o.min_triangles =
+            most && most < PROM_OBJECT_TRIANGLES_MIN ? most : PROM_OBJECT_TRIANGLES_MIN;
+    return o;
+}
+
 static prom_status check_options(prom_object_options *o, prom_error *error)
 {
-    if (!o->max_triangles) o->max_triangles = MAX_TRIANGLES;
-    if (!o->min_triangles) o->min_triangles = MIN_TRIANGLES;
+    *o = prom_object_options_resolved(*o);
     if (o->min_triangles > o->max_triangles)
         return prom_fail(error, PROM_ERR_USAGE,
                          "objects: the least triangles (%u) exceed the most (%u); lower the "

@@ -38,11 +38,18 @@ typedef struct prom_group {
     uint32_t first_object, object_count; // objects of a group stand together
 } prom_group;
 
+#define PROM_OBJECT_TRIANGLES_MAX 4096u
+#define PROM_OBJECT_TRIANGLES_MIN 256u
+
 typedef struct prom_object_options {
-    uint32_t max_triangles; // larger objects are split; 0: 4096
-    uint32_t min_triangles; // unique neighbours smaller than this are gathered; 0: 256
+    uint32_t max_triangles; // larger objects are split; 0: PROM_OBJECT_TRIANGLES_MAX, or more
+    uint32_t min_triangles; // unique neighbours smaller than this are gathered; 0:
+                            // PROM_OBJECT_TRIANGLES_MIN, or less
     double chunk_size;      // edge of a surface chunk in scene units; 0: from the layout
 } prom_object_options;
+
+// The options with the defaults put in.
+prom_object_options prom_object_options_resolved(prom_object_options options);
 
 typedef struct prom_objects {
     PROM_ARRAY(prom_shape) shapes;

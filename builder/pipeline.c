@@ -231,9 +231,7 @@ static prom_build_options resolved(const prom_build_options *options)
 {
     prom_build_options o = *options;
     if (!o.import.max_texture_px) o.import.max_texture_px = 1024;
-    if (!o.objects.max_triangles) o.objects.max_triangles = 4096;
-    if (!o.objects.min_triangles)
-        o.objects.min_triangles = o.objects.max_triangles < 256 ? o.objects.max_triangles : 256;
+    o.objects = prom_object_options_resolved(o.objects);
     if (!o.tree.max_children) o.tree.max_children = 16;
     if (!o.texture_mb) o.texture_mb = 256;
     return o;
