@@ -264,7 +264,7 @@ static void profiles_know_their_renderer(void **state)
     prom_error error = {0};
     assert_false(prom_cost_is_of(&m, name));
     assert_true(prom_cost_is_of(&m, m.renderer));
-    snprintf(m.renderer, sizeof m.renderer, "%s", name);
+    snprintf(m.renderer, sizeof m.renderer, "%.*s", (int)sizeof m.renderer - 1, name);
     assert_true(prom_cost_is_of(&m, name));
     assert_int_equal(prom_cost_save(&m, path, &error), PROM_OK);
     assert_int_equal(prom_cost_load(path, &m, &error), PROM_OK);
