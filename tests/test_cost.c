@@ -386,6 +386,9 @@ static void the_governor_follows_the_device(void **state)
     assert_true(g.ratio > 1.5);
     for (int i = 0; i < 12; i++) prom_governor_feed(&g, 10, 10, 1);
     assert_true(fabs(g.ratio - 1) < 0.05 && fabs(g.select_ms - 1) < 0.05);
+    // One stalled frame says nothing of the next.
+    prom_governor_feed(&g, 10, 40, 1);
+    assert_true(fabs(g.ratio - 1) < 0.05);
 }
 
 static void the_governor_stays_in_its_bounds(void **state)

@@ -1,17 +1,34 @@
 #include "traverse/governor.h"
 
 #include <math.h>
+#include <string.h>
 
-// Smoothing: a frame that took longer than predicted counts for more than one that took less,
-// so that overload ends within 2 to 3 frames and one quick frame does not invite the next miss.
-#define RATIO_UP 0.6
-#define RATIO_DOWN 0.3
+// The ratio is a median and no running mean: a single stalled frame (the scheduler gives the
+// core away for some milliseconds, about every fifteenth frame on a shared machine) must not
+// make the next ones poor, while a lasting change is followed after three.
 #define RATIO_MIN 0.25
 #define RATIO_MAX 4.0
 
+// Selection time: a slow one counts for more than a quick one.
+#define SELECT_UP 0.6
+#define SELECT_DOWN 0.3
+
 static double smoothed(double old, double now)
 {
-    return old + (now > old ? RATIO_UP : RATIO_DOWN) * (now - old);
+    return old + (now > old ? SELECT_UP : SELECT_DOWN) * (now - old);
+}
+
+static double median(const double *values, unsigned count)
+{
+    double sorted[PROM_GOVERNOR_FRAMES];
+    memcpy(sorted, values, count * sizeof *sorted);
+    for (unsigned i = 1; i < count; i++)
+        for (unsigned k = i; k > 0 && sorted[k] < sorted[k - 1]; k--) {
+            double swapped = sorted[k];
+            sorted[k] = sorted[k - 1];
+            sorted[k - 1] = swapped;
+        }
+    return sorted[count / 2];
 }
 
 void prom_governor_init(prom_governor *governor, double margin)
@@ -34,7 +51,9 @@ void prom_governor_feed(prom_governor *governor, double predicted_ms, double dra
         governor->select_ms = smoothed(governor->select_ms, select_ms);
     if (!(predicted_ms > 0.0) || !isfinite(predicted_ms)) return;
     if (!(draw_ms > 0.0) || !isfinite(draw_ms)) return;
-    // A single stalled frame is worth no more than the clamp.
     double now = fmin(fmax(draw_ms / predicted_ms, RATIO_MIN), RATIO_MAX);
-    governor->ratio = smoothed(governor->ratio, now);
+    governor->scores[governor->frames++ % PROM_GOVERNOR_FRAMES] = now;
+    unsigned known =
+        governor->frames < PROM_GOVERNOR_FRAMES ? governor->frames : PROM_GOVERNOR_FRAMES;
+    governor->ratio = median(governor->scores, known);
 }

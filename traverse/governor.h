@@ -3,10 +3,14 @@
 #ifndef PROM_TRAVERSE_GOVERNOR_H
 #define PROM_TRAVERSE_GOVERNOR_H
 
+#define PROM_GOVERNOR_FRAMES 5
+
 typedef struct prom_governor {
-    double ratio;     // actual / predicted, smoothed over a few frames, within [1/4, 4]
-    double margin;    // part of the budget kept back
-    double select_ms; // smoothed selection time, charged to the budget
+    double ratio; // median of the last frames' actual / predicted, within [1/4, 4]
+    double scores[PROM_GOVERNOR_FRAMES]; // actual / predicted, a ring
+    unsigned frames;                     // fed so far
+    double margin;                       // part of the budget kept back
+    double select_ms;                    // smoothed selection time, charged to the budget
 } prom_governor;
 
 void prom_governor_init(prom_governor *governor, double margin);
