@@ -7,15 +7,17 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#define LEAST_MARGIN 0.08
+// The prediction's own mean error on walks through real scenes (measured: 3 to 12 %).
+#define WALK_ERROR 0.08
+// A disturbed calibration must not waste half of each frame, nor a lucky one promise too much.
+#define LEAST_MARGIN 0.15
 #define MOST_MARGIN 0.30
 
 // The part of the budget to keep back so that the slow frames of a picture predicted at the
-// rest still fit; within bounds, since a disturbed calibration must not waste half of each
-// frame.
+// rest still fit.
 static double margin_for(double noise)
 {
-    double margin = 1.0 - 1.0 / (1.0 + noise);
+    double margin = 1.0 - 1.0 / ((1.0 + noise) * (1.0 + WALK_ERROR));
     return fmin(fmax(margin, LEAST_MARGIN), MOST_MARGIN);
 }
 
