@@ -47,7 +47,7 @@ typedef struct prom_build_state {
     prom_prototype *prototypes;
     uint16_t (*coverage)[PROM_DIRS];
     PROM_ARRAY(prom_representation) reps;
-    uint32_t open_reps; // meshes whose gaps were too large to be kept
+    uint32_t gap_meshes; // meshes whose gaps were too large to be kept
     PROM_ARRAY(struct prom_accuracy_row { uint8_t a[PROM_DIRS][PROM_SIZES]; }) accuracy;
     PROM_ARRAY(struct prom_share_row { uint16_t a[PROM_DIRS]; }) shares;
     PROM_ARRAY(prom_mesh_info) mesh_infos;
@@ -81,6 +81,9 @@ prom_status prom_stage_model(prom_build_state *b, prom_error *error);
 // Adds a texture to the container and the renderer, under the same id.
 prom_status prom_build_add_texture(prom_build_state *b, const prom_texture *texture,
                                    uint32_t *id, prom_error *error);
+// A mesh in its prototype's frame, moved so that the views look at the bounds' centre.
+prom_draw_item prom_build_item_around(uint32_t mesh, const float center[3]);
+
 // How a representation comes into the model.
 typedef enum prom_admission {
     PROM_ADMIT_UNMEASURED, // as it is: accuracy 1, no views taken

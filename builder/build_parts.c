@@ -76,6 +76,14 @@ static float fit_near(const struct prom_accuracy_row *row, float error, float ra
     return prom_accuracy_fit_near(e_px, mean, PROM_SIZES);
 }
 
+prom_draw_item prom_build_item_around(uint32_t mesh, const float center[3])
+{
+    return (prom_draw_item){.mesh = mesh,
+                            .texture = PROM_NONE,
+                            .origin = {-center[0], -center[1], -center[2]},
+                            .basis = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+}
+
 // Fills the row and near_k; false if the representation is not admitted.
 static bool measure(prom_build_state *b, uint32_t p, uint32_t device_id,
                     prom_admission admission, prom_representation *rep,
@@ -84,12 +92,9 @@ static bool measure(prom_build_state *b, uint32_t p, uint32_t device_id,
     const prom_prototype *proto = &b->prototypes[p];
     memset(row, 255, sizeof *row);
     if (admission == PROM_ADMIT_UNMEASURED) return true;
-    // The mesh stands in the prototype's frame, the views look at the bounds' centre.
-    prom_draw_item item = {.mesh = device_id,
-                           .texture = rep->texture,
-                           .flags = rep->flags,
-                           .origin = {-proto->center[0], -proto->center[1], -proto->center[2]},
-                           .basis = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    prom_draw_item item = prom_build_item_around(device_id, proto->center);
+    item.texture = rep->texture;
+    item.flags = rep->flags;
     prom_baker_set_subject(b->baker, &item, 1);
     if (admission == PROM_ADMIT_TRUTH) {
         prom_baker_take_views(b->baker, proto->radius, &b->truth);
@@ -118,7 +123,7 @@ prom_status prom_build_add_rep(prom_build_state *b, uint32_t p, const prom_mesh 
                          "the device has no memory for more meshes");
     fill_features(b, mesh, &r);
     if (!measure(b, p, device_id, admission, &r, &row)) {
-        b->open_reps++;
+        b->gap_meshes++;
         prom_renderer_truncate(b->renderer, device_id,
                                prom_renderer_texture_count(b->renderer));
         return PROM_OK;

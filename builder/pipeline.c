@@ -193,7 +193,7 @@ static prom_status run_stages(prom_build_state *b, const char *scene, prom_error
         if (status) return status;
     }
     prom_log(PROM_LOG_INFO, "meshes left out because they leave gaps: %u; kept: %zu",
-             b->open_reps, b->reps.count);
+             b->gap_meshes, b->reps.count);
     prom_status status = record_profile(b, error);
     return status ? status : record_settings(b, scene, error);
 }

@@ -132,14 +132,6 @@ static uint32_t flags_of_layer(prom_layer layer)
     return flags[layer];
 }
 
-static prom_draw_item item_around(uint32_t mesh, const float center[3])
-{
-    return (prom_draw_item){.mesh = mesh,
-                            .texture = PROM_NONE,
-                            .origin = {-center[0], -center[1], -center[2]},
-                            .basis = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-}
-
 static prom_status add_leaf(prom_build_state *b, uint32_t p, prom_error *error)
 {
     const prom_shape *shape = &b->objects.shapes.data[p];
@@ -172,7 +164,7 @@ static prom_status add_leaf(prom_build_state *b, uint32_t p, prom_error *error)
     // Where a level costs as little, a box would only show less.
     const prom_mesh *last = &s->levels[cheapest];
     if (last->index_count / 3 <= MIN_TRIANGLES && last->submesh_count == 1) return PROM_OK;
-    prom_draw_item item = item_around(s->mesh_ids[0], proto->center);
+    prom_draw_item item = prom_build_item_around(s->mesh_ids[0], proto->center);
     prom_baker_set_subject(b->baker, &item, 1);
     return prom_build_add_boxes(b, p, proto->center, proto->half, proto->radius, false,
                                 b->boxed[p], error);

@@ -90,11 +90,5 @@ prom_status prom_stage_model(prom_build_state *b, prom_error *error)
     m->texture_count = (uint32_t)b->texture_infos.count;
     m->names = b->objects.names.data;
     m->names_bytes = (uint32_t)b->objects.names.count;
-    uint64_t row = 0;
-    const char *wrong = prom_model_check(m, &row);
-    if (wrong)
-        return prom_fail(error, PROM_ERR_INPUT,
-                         "the built model is inconsistent: %s (row %llu)", wrong,
-                         (unsigned long long)row);
     return prom_writer_put_model(b->writer, m, error);
 }
