@@ -58,6 +58,7 @@ static void fill_features(const prom_build_state *b, const prom_mesh *mesh,
 {
     rep->shading = rep->texture == PROM_NONE ? main_shading(b, mesh) : PROM_SHADE_IMPOSTOR;
     rep->max_size_px = rep->kind == PROM_REP_MESH ? INFINITY : PROM_SIZE_MAX_PX;
+    if (rep->switch_distance <= 0) rep->switch_distance = INFINITY;
     rep->draws = mesh->submesh_count;
     rep->vertices = mesh->vertex_count;
     rep->triangles = mesh->index_count / 3;

@@ -13,6 +13,12 @@ typedef enum prom_layer {
     PROM_LAYER_COUNT
 } prom_layer;
 
+// A coarser mesh by the scene's artist, in the frame of the shape.
+typedef struct prom_shape_level {
+    prom_mesh mesh;
+    float until; // as in prom_source_level
+} prom_shape_level;
+
 // Geometry shared by instances: the future prototype of a leaf. In its own frame.
 typedef struct prom_shape {
     prom_mesh mesh; // submeshes by material
@@ -20,6 +26,9 @@ typedef struct prom_shape {
     bool lock_border; // its open border meets a neighbour's: no level may move it
     prom_box bounds;
     uint32_t instances;
+    prom_shape_level *levels; // by the artist, from fine to coarse, below `mesh`; or NULL
+    uint32_t level_count;
+    float until; // of `mesh`; INFINITY without levels
 } prom_shape;
 
 typedef struct prom_object {

@@ -17,18 +17,28 @@ typedef struct prom_source_image {
     bool missing;
 } prom_source_image;
 
+// A level of detail that came with the scene (glTF: MSFT_lod, or extras.lods). It stands for
+// the node's own meshes.
+typedef struct prom_source_level {
+    uint32_t first_mesh, mesh_count; // range in mesh_refs
+    float until; // distance up to which it is shown, scene units; INFINITY: any
+} prom_source_level;
+
 // A node of the file's hierarchy; parents come before children.
 typedef struct prom_source_node {
     char *name;
-    uint32_t parent;                 // PROM_NONE for the root
-    double local[16];                // column-major, to the parent
-    double world[16];                // the product up to the root
-    uint32_t first_mesh, mesh_count; // range in mesh_refs
+    uint32_t parent;                   // PROM_NONE for the root
+    double local[16];                  // column-major, to the parent
+    double world[16];                  // the product up to the root
+    uint32_t first_mesh, mesh_count;   // range in mesh_refs
+    uint32_t first_level, level_count; // range in levels: coarser ones, from fine to coarse
+    float until;                       // of its own meshes, as in prom_source_level
 } prom_source_node;
 
 typedef struct prom_source {
     PROM_ARRAY(prom_source_node) nodes;
     PROM_ARRAY(uint32_t) mesh_refs;
+    PROM_ARRAY(prom_source_level) levels;
     PROM_ARRAY(prom_mesh) meshes; // one submesh each, normals present, unused vertices removed
     PROM_ARRAY(prom_material) materials; // equal ones merged; texture = index into images
     PROM_ARRAY(prom_source_image) images;

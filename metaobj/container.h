@@ -14,7 +14,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define PROM_CONTAINER_VERSION 1
+#define PROM_CONTAINER_VERSION 2
 #define PROM_CONTAINER_APPLICATION_ID 0x50524f4d // "PROM"
 #define PROM_CONTAINER_CHUNK_BYTES (64u << 20)
 

@@ -101,6 +101,7 @@ static void take_rep(void *user, prom_row_in *row)
     prom_take_floats(row, &r.error, 1);
     r.max_size_px = prom_take_limit(row);
     prom_take_floats(row, &r.near_k, 1);
+    r.switch_distance = prom_take_limit(row);
     r.draws = prom_take_u32(row);
     r.vertices = prom_take_u32(row);
     r.triangles = prom_take_u32(row);

@@ -41,8 +41,9 @@ const prom_table_schema prom_tables[PROM_TABLE_COUNT] = {
          "  id INTEGER PRIMARY KEY, prototype INTEGER NOT NULL, kind INTEGER NOT NULL,\n"
          "  mesh INTEGER NOT NULL, texture INTEGER, flags INTEGER NOT NULL,\n"
          "  shading INTEGER NOT NULL, level INTEGER NOT NULL, error REAL NOT NULL,\n"
-         "  max_size_px REAL, near_k REAL NOT NULL, draws INTEGER NOT NULL,\n"
-         "  vertices INTEGER NOT NULL, triangles INTEGER NOT NULL) STRICT",
+         "  max_size_px REAL, near_k REAL NOT NULL, switch_distance REAL,\n"
+         "  draws INTEGER NOT NULL, vertices INTEGER NOT NULL,\n"
+         "  triangles INTEGER NOT NULL) STRICT",
          NULL},
     [PROM_TABLE_ACCURACY] = {"accuracy",
                              "CREATE TABLE accuracy(\n"

@@ -65,6 +65,7 @@ static prom_status put_rep(prom_writer *w, const prom_representation *r, uint32_
     prom_put_real(&row, r->error);
     prom_put_limit(&row, r->max_size_px);
     prom_put_real(&row, r->near_k);
+    prom_put_limit(&row, r->switch_distance);
     prom_put_int(&row, r->draws);
     prom_put_int(&row, r->vertices);
     prom_put_int(&row, r->triangles);

@@ -1,5 +1,6 @@
-// The model: the tree of meta-objects with their prototypes, representations and tables, held in
-// flat arrays. Meshes and texture pixels stay in the container (container.h) until asked for.
+// The model: the tree of meta-objects with their prototypes, representations and tables, held
+// in flat arrays. Meshes and texture pixels stay in the container (container.h) until asked
+// for.
 //
 // Order of nodes: breadth first, the root is 0, children of a node stand together, a child's
 // index is above its parent's. Nodes from tree_count on are the background layer: placed
@@ -34,20 +35,25 @@ typedef enum prom_shading {
     PROM_SHADE_COUNT
 } prom_shading;
 
-enum { PROM_REP_UNLIT = 1 }; // colours hold the light already
+enum {
+    PROM_REP_UNLIT = 1,  // colours hold the light already
+    PROM_REP_ARTIST = 2, // a level that came with the scene
+};
 
 // One way to draw a prototype.
 typedef struct prom_representation {
-    uint32_t kind;       // prom_rep_kind
-    uint32_t mesh;       // index into the meshes
-    uint32_t texture;    // impostor pictures, or PROM_NONE
-    uint32_t flags;      // PROM_REP_UNLIT
-    uint32_t shading;    // prom_shading of most of its pixels
-    uint32_t level;      // 0 = finest of its kind
-    float error;         // greatest object-space deviation, units of the prototype's frame
-    float max_size_px;   // largest projected diameter at which it may be shown; INFINITY: any.
-                         // Impostors: what was measured; meshes: where their gaps would show
-    float near_k;        // accuracy(e_px) = 1 / (1 + near_k * e_px), see benefit/accuracy.h
+    uint32_t kind;     // prom_rep_kind
+    uint32_t mesh;     // index into the meshes
+    uint32_t texture;  // impostor pictures, or PROM_NONE
+    uint32_t flags;    // PROM_REP_UNLIT, PROM_REP_ARTIST
+    uint32_t shading;  // prom_shading of most of its pixels
+    uint32_t level;    // 0 = finest of its kind
+    float error;       // greatest object-space deviation, units of the prototype's frame
+    float max_size_px; // largest projected diameter at which it may be shown; INFINITY: any.
+                       // Impostors: what was measured; meshes: where their gaps would show
+    float near_k;      // accuracy(e_px) = 1 / (1 + near_k * e_px), see benefit/accuracy.h
+    float
+        switch_distance; // up to which the scene's artist shows it, scene units; INFINITY: any
     uint32_t draws, vertices, triangles; // cost features
 } prom_representation;
 
@@ -113,8 +119,8 @@ typedef struct prom_model {
     uint16_t (*coverage)[PROM_DIRS]; // per prototype: covered share of the disc of its bounding
                                      // sphere, 65535 = 1
     uint32_t share_count;
-    uint16_t (*shares)[PROM_DIRS]; // per child of a cluster prototype, in child order: its share
-                                   // of the cluster's visible pixels; sums to 1 over the
+    uint16_t (*shares)[PROM_DIRS]; // per child of a cluster prototype, in child order: its
+                                   // share of the cluster's visible pixels; sums to 1 over the
                                    // children up to rounding (normalise when used)
     prom_material *materials;
     prom_mesh_info *meshes;
@@ -125,8 +131,8 @@ typedef struct prom_model {
 } prom_model;
 
 void prom_model_finish(prom_model *model);
-// NULL if every index, count and float of the model is in range and the node order holds; else a
-// literal that says what is wrong. The index of the offender goes to *row.
+// NULL if every index, count and float of the model is in range and the node order holds; else
+// a literal that says what is wrong. The index of the offender goes to *row.
 const char *prom_model_check(const prom_model *model, uint64_t *row);
 // Fills center, half and radius of all nodes from placements and prototypes: leaves from their
 // prototype, inner nodes from their children.

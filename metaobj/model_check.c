@@ -86,6 +86,7 @@ static const char *check_rep(const prom_model *m, const prom_representation *r)
     if (wrong) return wrong;
     if (!(r->error >= 0) || !isfinite(r->error)) return "a representation's error is no length";
     if (!(r->max_size_px > 0)) return "a representation's largest size is not above 0";
+    if (!(r->switch_distance > 0)) return "a representation's switch_distance is not above 0";
     if (!(r->near_k >= 0) || !isfinite(r->near_k))
         return "a representation's near_k is not at least 0";
     return NULL;

@@ -93,6 +93,7 @@ static inline prom_representation fixture_rep(uint32_t kind, uint32_t mesh, uint
         .error = 0.125f * (float)mesh,
         .max_size_px = kind == PROM_REP_MESH ? INFINITY : 128,
         .near_k = 0.3f,
+        .switch_distance = INFINITY,
         .draws = 1,
         .vertices = 24,
         .triangles = 12,

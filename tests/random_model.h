@@ -73,6 +73,7 @@ static inline void random_add_rep(prom_model *m, uint64_t *seed, prom_rep_kind k
         .level = level,
         .error = error,
         .max_size_px = kind == PROM_REP_MESH ? INFINITY : PROM_SIZE_MAX_PX,
+        .switch_distance = INFINITY,
         .near_k = error > 0.0f ? random_between(seed, 0.05f, 1.0f) : 0.0f,
         .draws = 1 + random_below(seed, 2),
         .vertices = triangles,
