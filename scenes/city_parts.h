@@ -4,8 +4,8 @@
 #define PROM_SCENES_CITY_PARTS_H
 
 #include "scenes/city.h"
-#include "scenes/city_random.h"
-#include "scenes/city_shape.h"
+#include "scenes/random.h"
+#include "scenes/shape.h"
 #include "scenes/city_texture.h"
 #include "scenes/path.h"
 

@@ -1,6 +1,6 @@
 #include "scenes/city_texture.h"
 
-#include "scenes/city_random.h"
+#include "scenes/random.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "scenes/city_shape.h"
+#include "scenes/shape.h"
 
 #include <assert.h>
 #include <cglm/cglm.h>

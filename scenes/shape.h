@@ -1,7 +1,7 @@
-// Shapes of the city under construction: vertices and triangles by material, put together from
+// Shapes under construction: vertices and triangles by material, put together from
 // quads, boxes, mouldings, turned profiles and tubes. Metres, y up.
-#ifndef PROM_SCENES_CITY_SHAPE_H
-#define PROM_SCENES_CITY_SHAPE_H
+#ifndef PROM_SCENES_SHAPE_H
+#define PROM_SCENES_SHAPE_H
 
 #include "metaobj/base/alloc.h"
 #include "scenes/glb_writer.h"

@@ -1,6 +1,6 @@
 // Deterministic random numbers of the city: SplitMix64 (Steele, Lea and Flood 2014).
-#ifndef PROM_SCENES_CITY_RANDOM_H
-#define PROM_SCENES_CITY_RANDOM_H
+#ifndef PROM_SCENES_RANDOM_H
+#define PROM_SCENES_RANDOM_H
 
 #include <stdint.h>
 
