@@ -36,7 +36,7 @@ typedef struct grid {
     const void *user;
 } grid;
 
-static uint32_t grid_vertex(prom_shape *shape, const grid *g, float x, float z)
+static uint32_t grid_vertex(prom_solid *shape, const grid *g, float x, float z)
 {
     float y = g->y;
     float normal[3] = {0, 1, 0};
@@ -52,13 +52,13 @@ static uint32_t grid_vertex(prom_shape *shape, const grid *g, float x, float z)
         normal[1] = 1 / length;
         normal[2] = -dz / length;
     }
-    return prom_shape_vertex(shape, (float[]){x, y, z}, normal, x / shape->repeat,
+    return prom_solid_vertex(shape, (float[]){x, y, z}, normal, x / shape->repeat,
                              z / shape->repeat);
 }
 
 // The cells of one paint, connected where they touch. Neighbours of another paint have the same
 // corners, so that no gap can show.
-static void build_grid(prom_shape *shape, const grid *g, int paint)
+static void build_grid(prom_solid *shape, const grid *g, int paint)
 {
     uint32_t nx = g->x->count, nz = g->z->count;
     uint32_t *ids = prom_alloc((size_t)nx * nz, sizeof *ids);
@@ -74,8 +74,8 @@ static void build_grid(prom_shape *shape, const grid *g, int paint)
                 if (ids[at[k]] == UINT32_MAX)
                     ids[at[k]] =
                         grid_vertex(shape, g, g->x->at[at[k] % nx], g->z->at[at[k] / nx]);
-            prom_shape_triangle(shape, ids[at[0]], ids[at[1]], ids[at[2]]);
-            prom_shape_triangle(shape, ids[at[0]], ids[at[2]], ids[at[3]]);
+            prom_solid_triangle(shape, ids[at[0]], ids[at[1]], ids[at[2]]);
+            prom_solid_triangle(shape, ids[at[0]], ids[at[2]], ids[at[3]]);
         }
     }
     prom_free(ids);
@@ -118,27 +118,27 @@ static void cut_block(cuts *c, float size, bool path)
 }
 
 // The kerb's face goes below the carriageway, so that no gap can show between them.
-static void build_kerb(prom_shape *shape, const cuts *x, const cuts *z)
+static void build_kerb(prom_solid *shape, const cuts *x, const cuts *z)
 {
     const float low = -0.12f, y = PROM_CITY_KERB;
     float w = x->at[x->count - 1], d = z->at[z->count - 1];
     for (uint32_t i = 0; i + 1 < x->count; i++) {
         float a = x->at[i], b = x->at[i + 1];
-        prom_shape_quad(shape, (float[]){a, low, d}, (float[]){b, low, d}, (float[]){b, y, d},
+        prom_solid_quad(shape, (float[]){a, low, d}, (float[]){b, low, d}, (float[]){b, y, d},
                         (float[]){a, y, d});
-        prom_shape_quad(shape, (float[]){b, low, 0}, (float[]){a, low, 0}, (float[]){a, y, 0},
+        prom_solid_quad(shape, (float[]){b, low, 0}, (float[]){a, low, 0}, (float[]){a, y, 0},
                         (float[]){b, y, 0});
     }
     for (uint32_t i = 0; i + 1 < z->count; i++) {
         float a = z->at[i], b = z->at[i + 1];
-        prom_shape_quad(shape, (float[]){w, low, b}, (float[]){w, low, a}, (float[]){w, y, a},
+        prom_solid_quad(shape, (float[]){w, low, b}, (float[]){w, low, a}, (float[]){w, y, a},
                         (float[]){w, y, b});
-        prom_shape_quad(shape, (float[]){0, low, a}, (float[]){0, low, b}, (float[]){0, y, b},
+        prom_solid_quad(shape, (float[]){0, low, a}, (float[]){0, low, b}, (float[]){0, y, b},
                         (float[]){0, y, a});
     }
 }
 
-static void build_block(prom_city *city, prom_shape *shape, const block *b)
+static void build_block(prom_city *city, prom_solid *shape, const block *b)
 {
     static const struct {
         prom_city_texture texture;
@@ -154,7 +154,7 @@ static void build_block(prom_city *city, prom_shape *shape, const block *b)
     cut_block(&z, b->depth, b->use == PROM_CITY_USE_PARK);
     grid g = {.x = &x, .z = &z, .paint_of = block_paint, .y = PROM_CITY_KERB, .user = b};
     for (int i = 0; i < CELL_COUNT; i++) {
-        prom_shape_use(
+        prom_solid_use(
             shape, prom_city_paint(city, paints[i].texture, paints[i].rgb, paints[i].repeat));
         build_grid(shape, &g, i);
         if (i == CELL_KERB) build_kerb(shape, &x, &z);
@@ -163,7 +163,7 @@ static void build_block(prom_city *city, prom_shape *shape, const block *b)
 
 // ---- streets
 
-static void build_street(prom_city *city, prom_shape *shape, float length)
+static void build_street(prom_city *city, prom_solid *shape, float length)
 {
     // Plain, zebra, road, zebra, plain.
     const float at[6] = {0, 0.8f, 3.8f, length - 3.8f, length - 0.8f, length};
@@ -171,10 +171,10 @@ static void build_street(prom_city *city, prom_shape *shape, float length)
     prom_paint zebra = prom_city_paint(city, PROM_CITY_ZEBRA, 0xffffff, PROM_CITY_ROAD_WIDTH);
     prom_paint road = prom_city_paint(city, PROM_CITY_ROAD, 0xffffff, PROM_CITY_ROAD_WIDTH);
     const prom_paint paints[5] = {plain, zebra, road, zebra, plain};
-    prom_shape_enter(shape, -PROM_CITY_ROAD_WIDTH / 2, 0, -length / 2, 0);
+    prom_solid_enter(shape, -PROM_CITY_ROAD_WIDTH / 2, 0, -length / 2, 0);
     for (int i = 0; i < 5; i++) {
-        prom_shape_use(shape, paints[i]);
-        prom_shape_floor(shape, 0, at[i], PROM_CITY_ROAD_WIDTH, at[i + 1], 0, CELL);
+        prom_solid_use(shape, paints[i]);
+        prom_solid_floor(shape, 0, at[i], PROM_CITY_ROAD_WIDTH, at[i + 1], 0, CELL);
     }
 }
 
@@ -185,19 +185,19 @@ static uint32_t ground_mesh(prom_city *city, int use, float width, float depth,
         const prom_city_ground *g = &city->grounds.data[i];
         if (g->use == use && g->width == width && g->depth == depth) return g->mesh;
     }
-    prom_shape shape;
-    prom_shape_init(&shape);
+    prom_solid shape;
+    prom_solid_init(&shape);
     if (use == USE_STREET) {
         build_street(city, &shape, depth);
     } else if (use == USE_CROSSING) {
         float half = PROM_CITY_ROAD_WIDTH / 2;
-        prom_shape_use(&shape, prom_city_paint(city, PROM_CITY_ASPHALT, 0xffffff, 4));
-        prom_shape_floor(&shape, -half, -half, half, half, 0, CELL);
+        prom_solid_use(&shape, prom_city_paint(city, PROM_CITY_ASPHALT, 0xffffff, 4));
+        prom_solid_floor(&shape, -half, -half, half, half, 0, CELL);
     } else {
         build_block(city, &shape, &(block){(prom_city_use)use, width, depth});
     }
-    prom_city_ground g = {use, width, depth, prom_shape_write(&shape, city->glb, name)};
-    prom_shape_finish(&shape);
+    prom_city_ground g = {use, width, depth, prom_solid_write(&shape, city->glb, name)};
+    prom_solid_finish(&shape);
     prom_array_push(&city->grounds, g);
     return g.mesh;
 }
@@ -286,16 +286,16 @@ void prom_city_land(prom_city *city, float x0, float z0, float x1, float z1, uin
     cut_land(&z, l.z0, l.z1);
     grid g = {.x = &x, .z = &z, .paint_of = land_part, .height_of = land_height, .user = &l};
     for (int i = 0; i < 4; i++) {
-        prom_shape shape;
-        prom_shape_init(&shape);
-        prom_shape_use(&shape, prom_city_paint(city, PROM_CITY_GRASS, 0xf0ecd0, 7));
+        prom_solid shape;
+        prom_solid_init(&shape);
+        prom_solid_use(&shape, prom_city_paint(city, PROM_CITY_GRASS, 0xf0ecd0, 7));
         build_grid(&shape, &g, i);
         prom_glb_node node = {.name = names[i],
                               .parent = parent,
-                              .mesh = prom_shape_write(&shape, city->glb, names[i]),
+                              .mesh = prom_solid_write(&shape, city->glb, names[i]),
                               .scale = 1};
         prom_glb_add_node(city->glb, &node);
-        prom_shape_finish(&shape);
+        prom_solid_finish(&shape);
     }
     plant_land(city, &l, parent);
 }

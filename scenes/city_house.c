@@ -128,7 +128,7 @@ void prom_city_measure_house(const prom_city *city, prom_city_prototype *house)
 // ---- geometry
 
 // The mouldings of a front: plinth between the doors, courses between the storeys, a cornice.
-static void build_bands(prom_shape *shape, const prom_facade *f, bool courses, bool plain)
+static void build_bands(prom_solid *shape, const prom_facade *f, bool courses, bool plain)
 {
     static const float course[4][2] = {{0, 0}, {0, 0.07f}, {0.12f, 0.07f}, {0.16f, 0}};
     static const float cornice[9][2] = {{0, 0},         {0.04f, 0.05f}, {0.10f, 0.06f},
@@ -136,47 +136,47 @@ static void build_bands(prom_shape *shape, const prom_facade *f, bool courses, b
                                         {0.27f, 0.22f}, {0.27f, 0.24f}, {0.30f, 0}};
     static const float simple[3][2] = {{0, 0}, {0.22f, 0.2f}, {0.3f, 0}};
     float top = f->floors[f->storeys], bay = f->width / (float)(f->bays ? f->bays : 1);
-    prom_shape_use(shape, f->trim);
+    prom_solid_use(shape, f->trim);
     float x = 0;
     for (uint32_t i = 0; i <= f->bays; i++) {
         bool last = i == f->bays, door = f->has_door && i == f->door_bay;
         if (!last && !door) continue;
         float end = last ? f->width : bay * ((float)i + 0.5f) - 0.72f;
         if (end > x + 0.05f)
-            prom_shape_box(shape, x, -0.1f, 0, end, 0.42f, 0.05f, PROM_FACE_NO_BACK);
+            prom_solid_box(shape, x, -0.1f, 0, end, 0.42f, 0.05f, PROM_FACE_NO_BACK);
         x = end + 1.44f;
     }
     for (uint32_t s = 1; courses && !plain && s < f->storeys; s++) {
-        prom_shape_frame old = prom_shape_enter(shape, 0, f->floors[s] + 0.1f, 0, 0);
-        prom_shape_moulding(shape, course, 4, 0, f->width);
-        prom_shape_leave(shape, old);
+        prom_solid_frame old = prom_solid_enter(shape, 0, f->floors[s] + 0.1f, 0, 0);
+        prom_solid_moulding(shape, course, 4, 0, f->width);
+        prom_solid_leave(shape, old);
     }
-    prom_shape_frame old = prom_shape_enter(shape, 0, top - 0.3f, 0, 0);
+    prom_solid_frame old = prom_solid_enter(shape, 0, top - 0.3f, 0, 0);
     if (plain || f->detail < 2)
-        prom_shape_moulding(shape, simple, 3, 0, f->width);
+        prom_solid_moulding(shape, simple, 3, 0, f->width);
     else
-        prom_shape_moulding(shape, cornice, 9, 0, f->width);
-    prom_shape_leave(shape, old);
+        prom_solid_moulding(shape, cornice, 9, 0, f->width);
+    prom_solid_leave(shape, old);
     // Blocks under the cornice.
     float gap = f->detail == 3 ? 0.5f : 0.3f;
     for (int i = 0; f->detail > 2 && !plain && (float)i * gap < f->width - 0.3f; i++)
-        prom_shape_box(shape, 0.12f + gap * (float)i, top - 0.46f, 0, 0.24f + gap * (float)i,
+        prom_solid_box(shape, 0.12f + gap * (float)i, top - 0.46f, 0, 0.24f + gap * (float)i,
                        top - 0.3f, 0.12f, PROM_FACE_NO_BACK & ~PROM_FACE_TOP);
 }
 
-static void build_quoins(prom_shape *shape, const prom_facade *f)
+static void build_quoins(prom_solid *shape, const prom_facade *f)
 {
     int n = (int)((f->floors[f->storeys] - 0.9f) / 0.42f);
-    prom_shape_use(shape, f->trim);
+    prom_solid_use(shape, f->trim);
     for (int i = 0; i < n; i++) {
         float y = 0.44f + 0.42f * (float)i, w = i % 2 ? 0.3f : 0.48f;
-        prom_shape_box(shape, 0, y, 0, w, y + 0.39f, 0.04f, PROM_FACE_NO_BACK);
-        prom_shape_box(shape, f->width - w, y, 0, f->width, y + 0.39f, 0.04f,
+        prom_solid_box(shape, 0, y, 0, w, y + 0.39f, 0.04f, PROM_FACE_NO_BACK);
+        prom_solid_box(shape, f->width - w, y, 0, f->width, y + 0.39f, 0.04f,
                        PROM_FACE_NO_BACK);
     }
 }
 
-static void build_downpipe(prom_shape *shape, const prom_facade *f)
+static void build_downpipe(prom_solid *shape, const prom_facade *f)
 {
     float top = f->floors[f->storeys];
     const float points[4][3] = {{0.18f, 0.05f, 0.13f},
@@ -184,29 +184,29 @@ static void build_downpipe(prom_shape *shape, const prom_facade *f)
                                 {0.18f, top - 0.3f, 0.36f},
                                 {0.18f, top - 0.1f, 0.36f}};
     static const float radii[4] = {0.05f, 0.05f, 0.05f, 0.05f};
-    prom_shape_use(shape, f->frame);
-    prom_shape_tube(shape, points, radii, 4, f->detail < 3 ? 5 : f->detail == 3 ? 8 : 12);
+    prom_solid_use(shape, f->frame);
+    prom_solid_tube(shape, points, radii, 4, f->detail < 3 ? 5 : f->detail == 3 ? 8 : 12);
 }
 
-static void build_walls(prom_city *city, prom_shape *shape, const style *s, prom_facade front,
+static void build_walls(prom_city *city, prom_solid *shape, const style *s, prom_facade front,
                         prom_random *random)
 {
     prom_facade back = front, side = front;
-    prom_shape_frame old = prom_shape_enter(shape, -s->width / 2, 0, 0, 0);
+    prom_solid_frame old = prom_solid_enter(shape, -s->width / 2, 0, 0, 0);
     prom_city_build_facade(city, shape, &front, random);
     build_bands(shape, &front, s->courses, false);
     if (s->quoins && front.detail > 1) build_quoins(shape, &front);
     if (front.detail > 1) build_downpipe(shape, &front);
-    prom_shape_leave(shape, old);
+    prom_solid_leave(shape, old);
     // Behind and at the sides everything is plainer.
     back.surrounds = back.pediments = back.keystones = back.balcony = back.shutters = false;
     back.has_shop = false;
     back.bars_across = 1;
     back.door_bay = s->bays / 2;
-    old = prom_shape_enter(shape, s->width / 2, 0, -s->depth, 3.14159265f);
+    old = prom_solid_enter(shape, s->width / 2, 0, -s->depth, 3.14159265f);
     prom_city_build_facade(city, shape, &back, random);
     build_bands(shape, &back, false, true);
-    prom_shape_leave(shape, old);
+    prom_solid_leave(shape, old);
     side = back;
     side.width = s->depth;
     side.has_door = false;
@@ -214,15 +214,15 @@ static void build_walls(prom_city *city, prom_shape *shape, const style *s, prom
     // No window in a wall that a neighbour leans on.
     side.bays = s->corner ? 3 : 0;
     for (int i = 0; i < 2; i++) {
-        old = i ? prom_shape_enter(shape, -s->width / 2, 0, -s->depth, -1.57079633f)
-                : prom_shape_enter(shape, s->width / 2, 0, 0, 1.57079633f);
+        old = i ? prom_solid_enter(shape, -s->width / 2, 0, -s->depth, -1.57079633f)
+                : prom_solid_enter(shape, s->width / 2, 0, 0, 1.57079633f);
         prom_city_build_facade(city, shape, &side, random);
         if (s->corner) build_bands(shape, &side, s->courses, s->roof != PROM_ROOF_FLAT);
-        prom_shape_leave(shape, old);
+        prom_solid_leave(shape, old);
     }
 }
 
-void prom_city_build_house(prom_city *city, const prom_city_prototype *which, prom_shape *shape)
+void prom_city_build_house(prom_city *city, const prom_city_prototype *which, prom_solid *shape)
 {
     style s = draw_style(city, which->number);
     prom_random random = prom_random_stream(city->options.seed, 100, which->number);

@@ -41,17 +41,17 @@ void prom_city_plan_finish(prom_city_plan *plan)
 static uint32_t prototype_mesh(prom_city *city, prom_city_prototype *p, const char *name)
 {
     if (p->mesh != PROM_GLB_NONE) return p->mesh;
-    prom_shape shape;
-    prom_shape_init(&shape);
+    prom_solid shape;
+    prom_solid_init(&shape);
     if (p->kind == PROM_CITY_HOUSE)
         prom_city_build_house(city, p, &shape);
     else if (p->kind <= PROM_CITY_SHRUB)
         prom_city_build_tree(city, p, &shape);
     else
         prom_city_build_thing(city, p, &shape);
-    prom_log(PROM_LOG_DEBUG, "%s: %u triangles", name, prom_shape_triangles(&shape));
-    p->mesh = prom_shape_write(&shape, city->glb, name);
-    prom_shape_finish(&shape);
+    prom_log(PROM_LOG_DEBUG, "%s: %u triangles", name, prom_solid_triangles(&shape));
+    p->mesh = prom_solid_write(&shape, city->glb, name);
+    prom_solid_finish(&shape);
     return p->mesh;
 }
 

@@ -4,10 +4,10 @@
 #define PROM_SCENES_CITY_PARTS_H
 
 #include "scenes/city.h"
-#include "scenes/random.h"
-#include "scenes/shape.h"
 #include "scenes/city_texture.h"
 #include "scenes/path.h"
+#include "scenes/random.h"
+#include "scenes/solid.h"
 
 #include <stdbool.h>
 
@@ -69,10 +69,10 @@ prom_paint prom_city_paint(prom_city *city, prom_city_texture texture, uint32_t 
 // empty shape; the origin is on the ground, the front faces +z
 
 void prom_city_build_house(prom_city *city, const prom_city_prototype *which,
-                           prom_shape *shape);
-void prom_city_build_tree(prom_city *city, const prom_city_prototype *which, prom_shape *shape);
+                           prom_solid *shape);
+void prom_city_build_tree(prom_city *city, const prom_city_prototype *which, prom_solid *shape);
 void prom_city_build_thing(prom_city *city, const prom_city_prototype *which,
-                           prom_shape *shape);
+                           prom_solid *shape);
 // Of a tree or shrub, for its name.
 const char *prom_city_species(prom_city_kind kind, uint32_t number);
 // Fills width, depth and corner of a house's prototype.
@@ -93,10 +93,10 @@ typedef struct prom_facade {
 } prom_facade;
 
 // A wall with windows from (0,0) to (width, top) in the frame's x and y, its outside to +z.
-void prom_city_build_facade(prom_city *city, prom_shape *shape, const prom_facade *facade,
+void prom_city_build_facade(prom_city *city, prom_solid *shape, const prom_facade *facade,
                             prom_random *random);
 // A glazed window in the opening [x0,x1] x [y0,y1] of a wall at z = 0, with its reveal.
-void prom_city_build_window(prom_city *city, prom_shape *shape, const prom_facade *facade,
+void prom_city_build_window(prom_city *city, prom_solid *shape, const prom_facade *facade,
                             const float opening[4], prom_random *random);
 
 // ---- roofs (city_roof.c)
@@ -123,7 +123,7 @@ typedef struct prom_roof {
 } prom_roof;
 
 // Over x in [-width/2, width/2], z in [-depth, 0].
-void prom_city_build_roof(prom_city *city, prom_shape *shape, const prom_roof *roof,
+void prom_city_build_roof(prom_city *city, prom_solid *shape, const prom_roof *roof,
                           prom_random *random);
 
 // ---- layout (city_layout.c)

@@ -144,7 +144,7 @@ static void random_direction(prom_random *random, vec3 out)
 // ---- wood
 
 // A limb from `from` to `to` that sags or rises by `bend` in its middle.
-static void build_limb(prom_shape *shape, const float from[3], const float to[3], float bend,
+static void build_limb(prom_solid *shape, const float from[3], const float to[3], float bend,
                        float thick, int points, int sides)
 {
     float line[8][3], radii[8];
@@ -154,10 +154,10 @@ static void build_limb(prom_shape *shape, const float from[3], const float to[3]
         line[i][1] += 4 * bend * t * (1 - t);
         radii[i] = thick * (1 - 0.85f * t);
     }
-    prom_shape_tube(shape, (const float(*)[3])line, radii, points, sides);
+    prom_solid_tube(shape, (const float(*)[3])line, radii, points, sides);
 }
 
-static void build_trunk(prom_shape *shape, const species *s, float height, int detail,
+static void build_trunk(prom_solid *shape, const species *s, float height, int detail,
                         prom_random *random)
 {
     float line[8][3], radii[8];
@@ -173,10 +173,10 @@ static void build_trunk(prom_shape *shape, const species *s, float height, int d
         line[i][2] = side * sinf(lean);
         radii[i] = s->trunk * (i ? 1 - 0.8f * t : 1.5f); // flared at the foot
     }
-    prom_shape_tube(shape, (const float(*)[3])line, radii, points, sides);
+    prom_solid_tube(shape, (const float(*)[3])line, radii, points, sides);
 }
 
-static void build_branches(prom_shape *shape, const species *s, const float center[3],
+static void build_branches(prom_solid *shape, const species *s, const float center[3],
                            const float half[3], int detail, prom_random *random)
 {
     int count = (int)((float)s->branches * (detail < 2 ? 0.4f : detail == 2 ? 1 : 1.4f));
@@ -199,7 +199,7 @@ static void build_branches(prom_shape *shape, const species *s, const float cent
 
 // ---- leaves
 
-static void build_card(prom_shape *shape, const float p[3], const float right[3],
+static void build_card(prom_solid *shape, const float p[3], const float right[3],
                        const float up[3], const float normal[3])
 {
     uint32_t first = 0;
@@ -209,17 +209,17 @@ static void build_card(prom_shape *shape, const float p[3], const float right[3]
         glm_vec3_copy((float *)p, q);
         glm_vec3_muladds((float *)right, corner[i][0], q);
         glm_vec3_muladds((float *)up, corner[i][1], q);
-        uint32_t id = prom_shape_vertex(shape, q, normal, 0.5f + 0.5f * corner[i][0],
+        uint32_t id = prom_solid_vertex(shape, q, normal, 0.5f + 0.5f * corner[i][0],
                                         0.5f - 0.5f * corner[i][1]);
         if (!i) first = id;
     }
-    prom_shape_triangle(shape, first, first + 1, first + 2);
-    prom_shape_triangle(shape, first, first + 2, first + 3);
+    prom_solid_triangle(shape, first, first + 1, first + 2);
+    prom_solid_triangle(shape, first, first + 2, first + 3);
 }
 
 // Cards in the outer part of an ellipsoid, turned at random; lit as if they lay on its surface,
 // so that the crown looks round.
-static void build_crown(prom_shape *shape, const float center[3], const float half[3],
+static void build_crown(prom_solid *shape, const float center[3], const float half[3],
                         int cards, float size, prom_random *random)
 {
     for (int i = 0; i < cards; i++) {
@@ -250,7 +250,7 @@ static void build_crown(prom_shape *shape, const float center[3], const float ha
 }
 
 // Whorls of drooping branches, each a pair of needle cards crossed along the branch.
-static void build_fir(prom_shape *shape, float height, int detail, prom_random *random)
+static void build_fir(prom_solid *shape, float height, int detail, prom_random *random)
 {
     float density = sqrtf(pieces(detail));
     int tiers = (int)(15 * density), around = (int)(10 * density);
@@ -280,7 +280,7 @@ static void build_fir(prom_shape *shape, float height, int detail, prom_random *
     }
 }
 
-void prom_city_build_tree(prom_city *city, const prom_city_prototype *which, prom_shape *shape)
+void prom_city_build_tree(prom_city *city, const prom_city_prototype *which, prom_solid *shape)
 {
     const species *s = species_of(which->kind, which->number);
     prom_random random =
@@ -290,14 +290,14 @@ void prom_city_build_tree(prom_city *city, const prom_city_prototype *which, pro
     static const uint32_t tints[] = {0xffffff, 0xe8f0c8, 0xd8e8d0, 0xf4e8b8};
     bool fir = s->leaves == PROM_CITY_NEEDLES;
     if (s->trunk > 0) {
-        prom_shape_use(shape, prom_city_paint(city, s->bark, 0xffffff, 1));
+        prom_solid_use(shape, prom_city_paint(city, s->bark, 0xffffff, 1));
         build_trunk(shape, s, fir ? height : height * (s->crown[0] + 0.2f), detail, &random);
     }
     float center[3] = {0, s->crown[0] * height, 0};
     float half[3] = {s->crown[1] * height, s->crown[2] * height, s->crown[1] * height};
     for (int k = 0; k < 3; k++) half[k] *= prom_random_between(&random, 0.92f, 1.08f);
     if (s->branches) build_branches(shape, s, center, half, detail, &random);
-    prom_shape_use(shape,
+    prom_solid_use(shape,
                    prom_city_paint(city, s->leaves,
                                    fir ? 0xffffff : tints[prom_random_below(&random, 4)], 1));
     float more = pieces(detail);

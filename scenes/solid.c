@@ -1,4 +1,4 @@
-#include "scenes/shape.h"
+#include "scenes/solid.h"
 
 #include <assert.h>
 #include <cglm/cglm.h>
@@ -6,12 +6,12 @@
 
 #define PI 3.14159265f
 
-void prom_shape_init(prom_shape *shape)
+void prom_solid_init(prom_solid *shape)
 {
-    *shape = (prom_shape){.repeat = 1, .frame = {.c = 1}};
+    *shape = (prom_solid){.repeat = 1, .frame = {.c = 1}};
 }
 
-void prom_shape_finish(prom_shape *shape)
+void prom_solid_finish(prom_solid *shape)
 {
     for (size_t i = 0; i < shape->parts.count; i++) {
         prom_array_finish(&shape->parts.data[i].vertices);
@@ -20,19 +20,19 @@ void prom_shape_finish(prom_shape *shape)
     prom_array_finish(&shape->parts);
 }
 
-uint32_t prom_shape_triangles(const prom_shape *shape)
+uint32_t prom_solid_triangles(const prom_solid *shape)
 {
     size_t n = 0;
     for (size_t i = 0; i < shape->parts.count; i++) n += shape->parts.data[i].indices.count / 3;
     return (uint32_t)n;
 }
 
-uint32_t prom_shape_write(const prom_shape *shape, prom_glb *glb, const char *name)
+uint32_t prom_solid_write(const prom_solid *shape, prom_glb *glb, const char *name)
 {
     prom_glb_part *parts = prom_calloc(shape->parts.count, sizeof *parts);
     size_t n = 0;
     for (size_t i = 0; i < shape->parts.count; i++) {
-        const prom_shape_part *p = &shape->parts.data[i];
+        const prom_solid_part *p = &shape->parts.data[i];
         if (!p->indices.count) continue;
         parts[n++] = (prom_glb_part){p->material, p->vertices.data, p->indices.data,
                                      (uint32_t)p->vertices.count, (uint32_t)p->indices.count};
@@ -42,19 +42,19 @@ uint32_t prom_shape_write(const prom_shape *shape, prom_glb *glb, const char *na
     return mesh;
 }
 
-void prom_shape_use(prom_shape *shape, prom_paint paint)
+void prom_solid_use(prom_solid *shape, prom_paint paint)
 {
     shape->repeat = paint.repeat;
     for (shape->part = 0; shape->part < shape->parts.count; shape->part++)
         if (shape->parts.data[shape->part].material == paint.material) return;
-    prom_array_push(&shape->parts, (prom_shape_part){.material = paint.material});
+    prom_array_push(&shape->parts, (prom_solid_part){.material = paint.material});
 }
 
-prom_shape_frame prom_shape_enter(prom_shape *shape, float x, float y, float z, float yaw)
+prom_solid_frame prom_solid_enter(prom_solid *shape, float x, float y, float z, float yaw)
 {
-    prom_shape_frame old = shape->frame;
+    prom_solid_frame old = shape->frame;
     float c = cosf(yaw), s = sinf(yaw);
-    shape->frame = (prom_shape_frame){
+    shape->frame = (prom_solid_frame){
         .origin = {old.origin[0] + old.c * x + old.s * z, old.origin[1] + y,
                    old.origin[2] - old.s * x + old.c * z},
         .c = old.c * c - old.s * s,
@@ -63,17 +63,17 @@ prom_shape_frame prom_shape_enter(prom_shape *shape, float x, float y, float z, 
     return old;
 }
 
-void prom_shape_leave(prom_shape *shape, prom_shape_frame frame)
+void prom_solid_leave(prom_solid *shape, prom_solid_frame frame)
 {
     shape->frame = frame;
 }
 
-uint32_t prom_shape_vertex(prom_shape *shape, const float p[3], const float n[3], float u,
+uint32_t prom_solid_vertex(prom_solid *shape, const float p[3], const float n[3], float u,
                            float v)
 {
     assert(shape->parts.count);
-    prom_shape_part *part = &shape->parts.data[shape->part];
-    const prom_shape_frame *f = &shape->frame;
+    prom_solid_part *part = &shape->parts.data[shape->part];
+    const prom_solid_frame *f = &shape->frame;
     prom_glb_vertex vertex = {
         .position = {f->origin[0] + f->c * p[0] + f->s * p[2], f->origin[1] + p[1],
                      f->origin[2] - f->s * p[0] + f->c * p[2]},
@@ -84,9 +84,9 @@ uint32_t prom_shape_vertex(prom_shape *shape, const float p[3], const float n[3]
     return (uint32_t)part->vertices.count - 1;
 }
 
-void prom_shape_triangle(prom_shape *shape, uint32_t a, uint32_t b, uint32_t c)
+void prom_solid_triangle(prom_solid *shape, uint32_t a, uint32_t b, uint32_t c)
 {
-    prom_shape_part *part = &shape->parts.data[shape->part];
+    prom_solid_part *part = &shape->parts.data[shape->part];
     prom_array_push(&part->indices, a);
     prom_array_push(&part->indices, b);
     prom_array_push(&part->indices, c);
@@ -105,47 +105,47 @@ static void face_axes(const float a[3], const float b[3], const float c[3], vec3
     glm_vec3_cross(u, n, v);
 }
 
-static void face(prom_shape *shape, const float *const corners[], int count)
+static void face(prom_solid *shape, const float *const corners[], int count)
 {
     vec3 n, u, v;
     uint32_t first = 0;
     face_axes(corners[0], corners[1], corners[2], n, u, v);
     for (int i = 0; i < count; i++) {
         float *p = (float *)corners[i];
-        uint32_t id = prom_shape_vertex(shape, p, n, glm_vec3_dot(p, u) / shape->repeat,
+        uint32_t id = prom_solid_vertex(shape, p, n, glm_vec3_dot(p, u) / shape->repeat,
                                         glm_vec3_dot(p, v) / shape->repeat);
         if (!i) first = id;
     }
     for (uint32_t i = 2; i < (uint32_t)count; i++)
-        prom_shape_triangle(shape, first, first + i - 1, first + i);
+        prom_solid_triangle(shape, first, first + i - 1, first + i);
 }
 
-void prom_shape_quad(prom_shape *shape, const float a[3], const float b[3], const float c[3],
+void prom_solid_quad(prom_solid *shape, const float a[3], const float b[3], const float c[3],
                      const float d[3])
 {
     face(shape, (const float *const[]){a, b, c, d}, 4);
 }
 
-void prom_shape_flat_triangle(prom_shape *shape, const float a[3], const float b[3],
+void prom_solid_flat_triangle(prom_solid *shape, const float a[3], const float b[3],
                               const float c[3])
 {
     face(shape, (const float *const[]){a, b, c}, 3);
 }
 
-void prom_shape_picture(prom_shape *shape, const float a[3], const float b[3], const float c[3],
+void prom_solid_picture(prom_solid *shape, const float a[3], const float b[3], const float c[3],
                         const float d[3])
 {
     vec3 n, u, v;
     face_axes(a, b, c, n, u, v);
-    uint32_t i = prom_shape_vertex(shape, a, n, 0, 1);
-    prom_shape_vertex(shape, b, n, 1, 1);
-    prom_shape_vertex(shape, c, n, 1, 0);
-    prom_shape_vertex(shape, d, n, 0, 0);
-    prom_shape_triangle(shape, i, i + 1, i + 2);
-    prom_shape_triangle(shape, i, i + 2, i + 3);
+    uint32_t i = prom_solid_vertex(shape, a, n, 0, 1);
+    prom_solid_vertex(shape, b, n, 1, 1);
+    prom_solid_vertex(shape, c, n, 1, 0);
+    prom_solid_vertex(shape, d, n, 0, 0);
+    prom_solid_triangle(shape, i, i + 1, i + 2);
+    prom_solid_triangle(shape, i, i + 2, i + 3);
 }
 
-void prom_shape_box(prom_shape *shape, float x0, float y0, float z0, float x1, float y1,
+void prom_solid_box(prom_solid *shape, float x0, float y0, float z0, float x1, float y1,
                     float z1, int faces)
 {
     // Corner i: bit 0 x, bit 1 y, bit 2 z.
@@ -159,29 +159,29 @@ void prom_shape_box(prom_shape *shape, float x0, float y0, float z0, float x1, f
                                       {0, 1, 5, 4}, {4, 5, 7, 6}, {1, 0, 2, 3}};
     for (int f = 0; f < 6; f++)
         if (faces >> f & 1)
-            prom_shape_quad(shape, p[corners[f][0]], p[corners[f][1]], p[corners[f][2]],
+            prom_solid_quad(shape, p[corners[f][0]], p[corners[f][1]], p[corners[f][2]],
                             p[corners[f][3]]);
 }
 
-void prom_shape_moulding(prom_shape *shape, const float (*profile)[2], int points, float x0,
+void prom_solid_moulding(prom_solid *shape, const float (*profile)[2], int points, float x0,
                          float x1)
 {
     for (int i = 0; i + 1 < points; i++) {
         const float *a = profile[i], *b = profile[i + 1];
-        prom_shape_quad(shape, (float[]){x0, a[0], a[1]}, (float[]){x1, a[0], a[1]},
+        prom_solid_quad(shape, (float[]){x0, a[0], a[1]}, (float[]){x1, a[0], a[1]},
                         (float[]){x1, b[0], b[1]}, (float[]){x0, b[0], b[1]});
     }
     for (int i = 1; i + 1 < points; i++) {
         const float *a = profile[0], *b = profile[i], *c = profile[i + 1];
-        prom_shape_flat_triangle(shape, (float[]){x1, a[0], a[1]}, (float[]){x1, c[0], c[1]},
+        prom_solid_flat_triangle(shape, (float[]){x1, a[0], a[1]}, (float[]){x1, c[0], c[1]},
                                  (float[]){x1, b[0], b[1]});
-        prom_shape_flat_triangle(shape, (float[]){x0, a[0], a[1]}, (float[]){x0, b[0], b[1]},
+        prom_solid_flat_triangle(shape, (float[]){x0, a[0], a[1]}, (float[]){x0, b[0], b[1]},
                                  (float[]){x0, c[0], c[1]});
     }
 }
 
 // One ring of a lathe at a profile point with the normal (outward, up).
-static uint32_t lathe_ring(prom_shape *shape, const float point[2], const float normal[2],
+static uint32_t lathe_ring(prom_solid *shape, const float point[2], const float normal[2],
                            int sides, float v)
 {
     uint32_t first = 0;
@@ -189,7 +189,7 @@ static uint32_t lathe_ring(prom_shape *shape, const float point[2], const float 
     for (int i = 0; i <= sides; i++) {
         float angle = 2 * PI * (float)(i % sides) / (float)sides, c = cosf(angle),
               s = sinf(angle);
-        uint32_t id = prom_shape_vertex(shape, (float[]){c * point[0], point[1], -s * point[0]},
+        uint32_t id = prom_solid_vertex(shape, (float[]){c * point[0], point[1], -s * point[0]},
                                         (float[]){c * normal[0], normal[1], -s * normal[0]},
                                         around * (float)i / (float)sides, v);
         if (!i) first = id;
@@ -215,7 +215,7 @@ static void point_normal(const float (*profile)[2], int points, int i, float nor
     normal[1] = length > 1e-6f ? y / length : 0;
 }
 
-void prom_shape_lathe(prom_shape *shape, const float (*profile)[2], int points, int sides,
+void prom_solid_lathe(prom_solid *shape, const float (*profile)[2], int points, int sides,
                       bool smooth)
 {
     float v = 0;
@@ -231,14 +231,14 @@ void prom_shape_lathe(prom_shape *shape, const float (*profile)[2], int points, 
         uint32_t low = lathe_ring(shape, a, na, sides, v);
         uint32_t high = lathe_ring(shape, b, nb, sides, next);
         for (uint32_t k = 0; k < (uint32_t)sides; k++) {
-            if (a[0] > 0) prom_shape_triangle(shape, low + k, low + k + 1, high + k);
-            if (b[0] > 0) prom_shape_triangle(shape, low + k + 1, high + k + 1, high + k);
+            if (a[0] > 0) prom_solid_triangle(shape, low + k, low + k + 1, high + k);
+            if (b[0] > 0) prom_solid_triangle(shape, low + k + 1, high + k + 1, high + k);
         }
         v = next;
     }
 }
 
-void prom_shape_tube(prom_shape *shape, const float (*points)[3], const float *radii, int count,
+void prom_solid_tube(prom_solid *shape, const float (*points)[3], const float *radii, int count,
                      int sides)
 {
     // One reference direction, turned as little as possible from ring to ring, so that the tube
@@ -266,18 +266,18 @@ void prom_shape_tube(prom_shape *shape, const float (*points)[3], const float *r
             glm_vec3_muladds(across, sinf(angle), n);
             glm_vec3_copy((float *)points[i], p);
             glm_vec3_muladds(n, radii[i], p);
-            uint32_t id = prom_shape_vertex(shape, p, n, (float)k / (float)sides, v);
+            uint32_t id = prom_solid_vertex(shape, p, n, (float)k / (float)sides, v);
             if (!k) first = id;
         }
         for (uint32_t k = 0; i && k < (uint32_t)sides; k++) {
-            prom_shape_triangle(shape, before + k, before + k + 1, first + k);
-            prom_shape_triangle(shape, before + k + 1, first + k + 1, first + k);
+            prom_solid_triangle(shape, before + k, before + k + 1, first + k);
+            prom_solid_triangle(shape, before + k + 1, first + k + 1, first + k);
         }
         before = first;
     }
 }
 
-void prom_shape_floor(prom_shape *shape, float x0, float z0, float x1, float z1, float y,
+void prom_solid_floor(prom_solid *shape, float x0, float z0, float x1, float z1, float y,
                       float cell)
 {
     uint32_t nx = (uint32_t)fmaxf(1, roundf((x1 - x0) / cell));
@@ -287,7 +287,7 @@ void prom_shape_floor(prom_shape *shape, float x0, float z0, float x1, float z1,
         for (uint32_t i = 0; i <= nx; i++) {
             float x = x0 + (x1 - x0) * (float)i / (float)nx;
             float z = z0 + (z1 - z0) * (float)j / (float)nz;
-            uint32_t id = prom_shape_vertex(shape, (float[]){x, y, z}, up, x / shape->repeat,
+            uint32_t id = prom_solid_vertex(shape, (float[]){x, y, z}, up, x / shape->repeat,
                                             z / shape->repeat);
             if (!i && !j) first = id;
         }
@@ -295,8 +295,8 @@ void prom_shape_floor(prom_shape *shape, float x0, float z0, float x1, float z1,
     for (uint32_t j = 0; j < nz; j++) {
         for (uint32_t i = 0; i < nx; i++) {
             uint32_t a = first + j * (nx + 1) + i, b = a + nx + 1;
-            prom_shape_triangle(shape, a, b, b + 1);
-            prom_shape_triangle(shape, a, b + 1, a + 1);
+            prom_solid_triangle(shape, a, b, b + 1);
+            prom_solid_triangle(shape, a, b + 1, a + 1);
         }
     }
 }
