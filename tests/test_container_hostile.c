@@ -45,7 +45,7 @@ static void refuses_changed_files(void **state)
     fixture_init(&f, 3, 4);
     static const char *const cases[][2] = {
         {"PRAGMA application_id=7", "is not a .prom container"},
-        {"PRAGMA user_version=2", "container format 2"},
+        {"PRAGMA user_version=2147483647", "container format 2147483647"},
         {"PRAGMA user_version=0", "container format 0"},
         {"DROP TABLE material", "table material is missing"},
         {"DROP TABLE node; CREATE VIEW node AS SELECT * FROM mesh", "table node is missing"},
