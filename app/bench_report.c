@@ -35,12 +35,20 @@ static json_t *device_json(const prom_session *session)
                      (int)prom_context_is_software(context), "cores", (int)prom_thread_count());
 }
 
-static json_t *holes_json(const prom_loop_result *result)
+static json_t *holes_json(const prom_run_statistics *t)
 {
-    if (!result->hole_frames) return json_null(); // not asked for
-    return json_pack("{s:i, s:o, s:o}", "frames", (int)result->hole_frames, "mean",
-                     prom_json_number(result->hole_mean), "max",
-                     prom_json_number(result->hole_max));
+    if (!t->hole_frames) return json_null(); // not asked for
+    return json_pack("{s:i, s:o, s:o}", "frames", (int)t->hole_frames, "mean",
+                     prom_json_number(t->holes_mean), "max", prom_json_number(t->holes_max));
+}
+
+static json_t *accuracy_json(const prom_run_statistics *t)
+{
+    if (!t->accuracy_frames) return json_null(); // not asked for
+    return json_pack("{s:i, s:o, s:o, s:o}", "frames", (int)t->accuracy_frames, "mean",
+                     prom_json_number(t->accuracy_mean), "min",
+                     prom_json_number(t->accuracy_min), "predicted",
+                     prom_json_number(t->predicted_accuracy));
 }
 
 static void set(json_t *object, const char *key, json_t *value)
@@ -81,7 +89,8 @@ static void set_found(json_t *run, const prom_run_facts *f, const prom_run_stati
     set(run, "infeasible_frames", json_integer(r->infeasible_frames));
     set(run, "least_budget_ms",
         r->infeasible_frames ? prom_json_number(r->least_budget_ms) : json_null());
-    set(run, "holes", holes_json(r));
+    set(run, "holes", holes_json(t));
+    set(run, "accuracy", accuracy_json(t));
     set(run, "start_s", prom_json_number(f->session->start_s));
     set(run, "calibration_s", prom_json_number(f->session->calibration_s));
     set(run, "memory_mb", pair_json("start", r->memory_start_mb, "end", r->memory_end_mb));
@@ -102,6 +111,26 @@ json_t *prom_bench_json(const prom_run_facts *facts)
     return json_pack("{s:[o]}", "runs", run);
 }
 
+// An empty field where a frame was not compared.
+static void put_share(FILE *out, bool checked, double share)
+{
+    if (checked)
+        fprintf(out, ",%.6f", share);
+    else
+        fputc(',', out);
+}
+
+static void put_row(FILE *out, size_t frame, double budget_ms, const prom_frame_record *r)
+{
+    fprintf(out, "%zu,%.4f,%g,%.4f,%.4f,%.4f,%.0f,%.0f,%u,%.1f,%.1f,%d", frame, r->t_s,
+            budget_ms, r->frame_ms, r->select_ms, r->predicted_ms, r->triangles, r->draws,
+            r->cut_nodes, r->benefit_px, r->loss_px, r->feasible);
+    put_share(out, r->holes_checked, r->holes);
+    put_share(out, r->accuracy_checked, r->accuracy);
+    put_share(out, true, prom_predicted_accuracy(r));
+    fputc('\n', out);
+}
+
 prom_status prom_bench_write_csv(const char *path, const prom_loop_options *options,
                                  const prom_loop_result *result, prom_error *error)
 {
@@ -110,14 +139,10 @@ prom_status prom_bench_write_csv(const char *path, const prom_loop_options *opti
     FILE *out = open_memstream(&text, &bytes);
     if (!out) return prom_fail(error, PROM_ERR_OUTPUT, "%s: %s", path, strerror(errno));
     fputs("frame,t_s,budget_ms,frame_ms,select_ms,predicted_ms,triangles,draws,cut_nodes,"
-          "benefit_px,loss_px,feasible\n",
+          "benefit_px,loss_px,feasible,holes,accuracy,predicted_accuracy\n",
           out);
-    for (size_t i = 0; i < result->frames.count; i++) {
-        const prom_frame_record *r = &result->frames.data[i];
-        fprintf(out, "%zu,%.4f,%g,%.4f,%.4f,%.4f,%.0f,%.0f,%u,%.1f,%.1f,%d\n", i, r->t_s,
-                options->budget_ms, r->frame_ms, r->select_ms, r->predicted_ms, r->triangles,
-                r->draws, r->cut_nodes, r->benefit_px, r->loss_px, r->feasible);
-    }
+    for (size_t i = 0; i < result->frames.count; i++)
+        put_row(out, i, options->budget_ms, &result->frames.data[i]);
     prom_status status = PROM_OK;
     if (fclose(out) != 0)
         status = prom_fail(error, PROM_ERR_OUTPUT, "%s: %s", path, strerror(errno));
@@ -145,9 +170,13 @@ void prom_bench_print(const prom_run_facts *facts)
            t.cut_nodes, t.loss_px, t.loss_px + t.benefit_px);
     printf("predicted  mean error %.1f %%, worst under-estimate %.0f %%\n", 100 * t.mape,
            100 * t.worst_under);
-    if (r->hole_frames)
+    if (t.hole_frames)
         printf("holes      mean %.3f %%, max %.3f %% of covered pixels in %u frames\n",
-               100 * r->hole_mean, 100 * r->hole_max, r->hole_frames);
+               100 * t.holes_mean, 100 * t.holes_max, t.hole_frames);
+    if (t.accuracy_frames)
+        printf("accuracy   mean %.2f %%, min %.2f %% in %u frames, predicted mean %.2f %%\n",
+               100 * t.accuracy_mean, 100 * t.accuracy_min, t.accuracy_frames,
+               100 * t.predicted_accuracy);
     printf("start      %.1f s, memory %.0f MiB, at the end %.0f\n", facts->session->start_s,
            r->memory_start_mb, r->memory_end_mb);
 }

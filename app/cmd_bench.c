@@ -23,6 +23,7 @@ enum {
     KEY_EVERY,
     KEY_COLOURS,
     KEY_HOLES,
+    KEY_ACCURACY,
 };
 
 static const struct argp_option options[] = {
@@ -38,6 +39,10 @@ static const struct argp_option options[] = {
     {"check-holes", KEY_HOLES, "N", 0,
      "On N frames also draw full detail and report where it covers the background and the cut "
      "does not",
+     1},
+    {"check-accuracy", KEY_ACCURACY, "N", 0,
+     "On N frames also draw full detail and report how much the picture looks like it: 1 - the "
+     "mean error of `edge-blur`",
      1},
     {0},
 };
@@ -73,6 +78,10 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case KEY_HOLES:
         o->loop.check_holes =
             (uint32_t)prom_option_whole(state, "--check-holes", text, 0, 100000);
+        break;
+    case KEY_ACCURACY:
+        o->loop.check_accuracy =
+            (uint32_t)prom_option_whole(state, "--check-accuracy", text, 0, 100000);
         break;
     case ARGP_KEY_ARG:
         prom_option_argument(state, text, &o->model);

@@ -1,6 +1,6 @@
 #include "app/frame_loop.h"
 
-#include "app/holes.h"
+#include "app/comparison.h"
 #include "metaobj/base/clock.h"
 #include "metaobj/base/log.h"
 #include "traverse/governor.h"
@@ -14,7 +14,7 @@ typedef struct loop {
     prom_selector *selector;
     prom_governor governor;
     prom_cut cut;
-    prom_holes holes;
+    prom_comparison comparison;
 } loop;
 
 static double memory_mb(void)
@@ -123,21 +123,31 @@ static bool is_spaced(uint32_t i, uint32_t wanted, uint32_t frames)
     return after > before;
 }
 
-// Pictures and hole checks after a frame. They disturb the caches, and `full` the device's
+static void compare(loop *l, const prom_camera *camera, prom_frame_record *record)
+{
+    if (!record->holes_checked && !record->accuracy_checked) return;
+    prom_difference d = prom_comparison_run(&l->comparison, l->session, camera, &l->cut);
+    if (record->holes_checked) record->holes = d.holes;
+    if (record->accuracy_checked) record->accuracy = d.accuracy;
+}
+
+// Pictures and comparisons after a frame. They disturb the caches, and `full` the device's
 // memory: one frame is drawn again, untimed.
-static prom_status between_frames(loop *l, uint32_t i, prom_error *error)
+static prom_status between_frames(loop *l, uint32_t i, prom_frame_record *record,
+                                  prom_error *error)
 {
     const prom_loop_options *o = l->options;
     bool keep = o->keep_folder && i % o->keep_every == 0;
-    bool check = is_spaced(i, o->check_holes, o->frames);
-    if (!keep && !check) return PROM_OK;
+    record->holes_checked = is_spaced(i, o->check_holes, o->frames);
+    record->accuracy_checked = is_spaced(i, o->check_accuracy, o->frames);
+    if (!keep && !record->holes_checked && !record->accuracy_checked) return PROM_OK;
     prom_camera camera = l->session->camera;
     prom_path_pose(&l->session->path, i, &camera);
     if (keep) {
         prom_status status = keep_pictures(l, i, &camera, error);
         if (status) return status;
     }
-    if (check) prom_holes_check(&l->holes, l->session, &camera, &l->cut);
+    compare(l, &camera, record);
     draw_frame(l, i);
     return PROM_OK;
 }
@@ -164,8 +174,8 @@ static prom_status walk(loop *l, prom_loop_result *result, prom_error *error)
         prom_frame_record record = draw_frame(l, i);
         if (!record.feasible) note_infeasible(l, result);
         feed(l, &record);
+        status = between_frames(l, i, &record, error);
         prom_array_push(&result->frames, record);
-        status = between_frames(l, i, error);
         prom_progress_step(&progress, 1);
     }
     prom_progress_end(&progress);
@@ -181,12 +191,10 @@ prom_status prom_frame_loop_run(prom_session *session, const prom_loop_options *
     l.selector = prom_selector_create(options->selector, &session->model, error);
     if (!l.selector) return error->status;
     prom_governor_init(&l.governor, session->cost.margin);
-    if (options->check_holes) status = prom_holes_init(&l.holes, session, error);
+    if (options->check_holes || options->check_accuracy)
+        status = prom_comparison_init(&l.comparison, session, options->check_accuracy, error);
     if (!status) status = walk(&l, result, error);
-    result->hole_frames = l.holes.frames;
-    result->hole_max = l.holes.max;
-    result->hole_mean = l.holes.frames ? l.holes.sum / l.holes.frames : 0;
-    prom_holes_finish(&l.holes);
+    prom_comparison_finish(&l.comparison);
     prom_cut_finish(&l.cut);
     prom_selector_destroy(l.selector);
     return status;

@@ -1,6 +1,6 @@
 // The frame loop: walks a path, selects and draws every frame within a budget, and keeps what
-// was measured. A frame's time runs from its start to the finished image; pictures and hole
-// checks are made between frames.
+// was measured. A frame's time runs from its start to the finished image; pictures and
+// comparisons with full detail are made between frames.
 #ifndef PROM_APP_FRAME_LOOP_H
 #define PROM_APP_FRAME_LOOP_H
 
@@ -14,6 +14,10 @@ typedef struct prom_frame_record {
     double benefit_px, loss_px;
     uint32_t cut_nodes;
     bool feasible; // the cheapest cut was within what could be spent
+    // Comparison with full detail, where it was made.
+    bool holes_checked, accuracy_checked;
+    double holes;    // share of the pixels covered by full detail that the cut does not cover
+    double accuracy; // of the whole picture, in [0,1]
 } prom_frame_record;
 
 typedef struct prom_loop_options {
@@ -22,15 +26,13 @@ typedef struct prom_loop_options {
     double budget_ms, distance_scale;
     const char *keep_folder; // PNGs of every keep_every-th frame; NULL: none
     uint32_t keep_every;
-    bool keep_colours;    // and each of them again in false colours
-    uint32_t check_holes; // frames to compare with `full`, evenly spaced; 0: none
+    bool keep_colours; // and each of them again in false colours
+    // Frames to compare with full detail, evenly spaced; 0: none.
+    uint32_t check_holes, check_accuracy;
 } prom_loop_options;
 
 typedef struct prom_loop_result {
     PROM_ARRAY(prom_frame_record) frames;
-    uint32_t hole_frames;
-    double hole_mean,
-        hole_max; // share of the pixels that full detail covers and the cut does not
     uint32_t infeasible_frames;
     double least_budget_ms; // with which no frame would have been infeasible
     double memory_start_mb, memory_end_mb;

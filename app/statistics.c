@@ -60,6 +60,39 @@ static void add_prediction(const prom_frame_record *records, size_t count,
     if (known) s->mape /= (double)known;
 }
 
+static void add_holes(const prom_frame_record *records, size_t count, prom_run_statistics *s)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (!records[i].holes_checked) continue;
+        s->hole_frames++;
+        s->holes_mean += records[i].holes;
+        s->holes_max = fmax(s->holes_max, records[i].holes);
+    }
+    if (s->hole_frames) s->holes_mean /= s->hole_frames;
+}
+
+double prom_predicted_accuracy(const prom_frame_record *record)
+{
+    double pixels = record->benefit_px + record->loss_px;
+    return pixels > 0 ? record->benefit_px / pixels : 1;
+}
+
+static void add_accuracy(const prom_frame_record *records, size_t count, prom_run_statistics *s)
+{
+    double least = 1;
+    for (size_t i = 0; i < count; i++) {
+        if (!records[i].accuracy_checked) continue;
+        s->accuracy_frames++;
+        s->accuracy_mean += records[i].accuracy;
+        s->predicted_accuracy += prom_predicted_accuracy(&records[i]);
+        least = fmin(least, records[i].accuracy);
+    }
+    if (!s->accuracy_frames) return;
+    s->accuracy_mean /= s->accuracy_frames;
+    s->predicted_accuracy /= s->accuracy_frames;
+    s->accuracy_min = least;
+}
+
 prom_run_statistics prom_run_statistics_of(const prom_frame_record *records, size_t count,
                                            double budget_ms)
 {
@@ -79,5 +112,7 @@ prom_run_statistics prom_run_statistics_of(const prom_frame_record *records, siz
     }
     add_misses(records, count, budget_ms, &s);
     add_prediction(records, count, &s);
+    add_holes(records, count, &s);
+    add_accuracy(records, count, &s);
     return s;
 }

@@ -15,10 +15,18 @@ typedef struct prom_run_statistics {
     double miss_rate, use_of_budget; // a miss: frame_ms above the budget
     uint32_t misses, longest_misses; // the longest run of them
     double mape, worst_under;        // of predicted_ms: mean |p/a - 1|, greatest a/p - 1
+    // Of the frames compared with full detail; 0 where there is none.
+    uint32_t hole_frames, accuracy_frames;
+    double holes_mean, holes_max;
+    double accuracy_mean, accuracy_min;
+    double predicted_accuracy; // mean of the same frames: benefit / (benefit + loss)
 } prom_run_statistics;
 
 // values: count >= 1 of them; sorted on return.
 prom_spread prom_spread_of(double *values, size_t count);
+// The accuracy that the selector expected of a frame: benefit / (benefit + loss), 1 where
+// nothing is in view.
+double prom_predicted_accuracy(const prom_frame_record *record);
 // records: count >= 1.
 prom_run_statistics prom_run_statistics_of(const prom_frame_record *records, size_t count,
                                            double budget_ms);

@@ -12,6 +12,8 @@
 // third.
 #include "benefit/metric.h"
 
+#include "metaobj/base/math.h"
+
 #include <assert.h>
 #include <math.h>
 
@@ -19,6 +21,17 @@
 #define GREY_GAIN 2.5f
 
 enum { PAD = 2 }; // radius of the blur; the Sobel filter adds 1
+
+void prom_metric_grey(const uint8_t *rgba, size_t pixels, float *grey)
+{
+    for (size_t i = 0; i < pixels; i++) {
+        const uint8_t *p = rgba + 4 * i;
+        float luminance = 0.2126f * prom_srgb8_to_linear(p[0]) +
+                          0.7152f * prom_srgb8_to_linear(p[1]) +
+                          0.0722f * prom_srgb8_to_linear(p[2]);
+        grey[i] = prom_linear_to_srgb(fminf(luminance, 1.0f));
+    }
+}
 
 static size_t row_floats(uint32_t width)
 {

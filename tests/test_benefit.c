@@ -192,6 +192,25 @@ static void box_blur(const float *in, float *out, uint32_t w, uint32_t h)
     }
 }
 
+// Greys stay what they are, brightness is that of the light and not of the code, alpha is not
+// looked at.
+static void grey_is_encoded_luminance(void **state)
+{
+    (void)state;
+    uint8_t rgba[259][4];
+    float grey[259];
+    for (int i = 0; i < 256; i++)
+        for (int k = 0; k < 4; k++) rgba[i][k] = (uint8_t)(k < 3 ? i : 255 - i);
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 4; k++) rgba[256 + i][k] = i == k ? 255 : 0;
+    prom_metric_grey(rgba[0], 259, grey);
+    for (int i = 0; i < 256; i++) assert_float_equal(grey[i], (float)i / 255.0f, 1e-5f);
+    float sum = 0.0f;
+    for (int i = 0; i < 3; i++) sum += prom_srgb_to_linear(grey[256 + i]);
+    assert_float_equal(sum, 1.0f, 1e-5f);
+    assert_true(grey[257] > grey[256] && grey[256] > grey[258]); // green, red, blue
+}
+
 static void edge_blur_is_a_difference(void **state)
 {
     (void)state;
@@ -274,6 +293,7 @@ int main(void)
         cmocka_unit_test(near_fit_recovers_its_parameter),
         cmocka_unit_test(footprint_of_a_full_disc),
         cmocka_unit_test(split_keeps_the_pixels_of_a_cluster),
+        cmocka_unit_test(grey_is_encoded_luminance),
         cmocka_unit_test(edge_blur_is_a_difference),
         cmocka_unit_test(edge_blur_grows_with_blur),
         cmocka_unit_test(edge_blur_weighs_what_matters),

@@ -166,8 +166,9 @@ static const char *const keys[] = {
     "memory_mb.start", "memory_mb.end",
     "predict.mape",    "predict.worst_under",
     "loss.mean",       "holes.mean",
-    "holes.max",       "device.renderer",
-    "resolution",
+    "holes.max",       "accuracy.mean",
+    "accuracy.min",    "accuracy.predicted",
+    "device.renderer", "resolution",
 };
 
 static void check_run(json_t *one, const char *selector)
@@ -184,6 +185,9 @@ static void check_run(json_t *one, const char *selector)
     assert_true(rate >= 0 && rate <= 1);
     double holes = number(one, "holes.mean");
     assert_true(holes >= 0 && holes <= number(one, "holes.max"));
+    double accuracy = number(one, "accuracy.mean"), least = number(one, "accuracy.min");
+    assert_true(number(one, "accuracy.frames") == 3);
+    assert_true(least > 0 && least <= accuracy && accuracy <= 1);
     assert_true(number(one, "cut_nodes.mean") >= 1);
     assert_true(number(one, "memory_mb.end") > 0);
 }
@@ -194,6 +198,15 @@ static void check_csv(const char *path)
     slurp(path, text, sizeof text);
     assert_int_equal(count_lines(text), 13); // the header and 12 frames
     assert_int_equal(strncmp(text, "frame,t_s,budget_ms,frame_ms,select_ms,", 39), 0);
+    // Every row has all fields; those of the comparison are empty where none was made.
+    int compared = 0;
+    for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n")) {
+        int commas = 0;
+        for (const char *c = line; *c; c++) commas += *c == ',';
+        assert_int_equal(commas, 14);
+        compared += !strstr(line, ",,");
+    }
+    assert_int_equal(compared, 1 + 3);
 }
 
 static void bench_reports_every_selector(void **state)
@@ -205,7 +218,8 @@ static void bench_reports_every_selector(void **state)
         char arguments[512];
         snprintf(arguments, sizeof arguments,
                  "bench city.prom --path city.path --selector %s --budget-ms 20 --frames 12 "
-                 "--warmup 2 --check-holes 3 --report r.json --csv r.csv --keep-frames kept "
+                 "--warmup 2 --check-holes 3 --check-accuracy 3 --report r.json --csv r.csv "
+                 "--keep-frames kept "
                  "--every 6 --false-colours" SMALL,
                  selectors[i]);
         expect(arguments, 0);
@@ -220,12 +234,30 @@ static void bench_reports_every_selector(void **state)
         assert_int_equal(count_others("kept", pictures), 0);
         assert_true(size_of("kept/frame-00006.png") > 200);
     }
-    // Full detail has no holes against itself.
-    expect("bench city.prom --selector full --frames 4 --warmup 0 --check-holes 4 "
-           "--report r.json" SMALL,
+}
+
+// Full detail is itself, pixel for pixel; the cheapest cut is not.
+static void full_detail_is_accurate(void **state)
+{
+    (void)state;
+    NEED_DEVICE();
+    expect("bench city.prom --selector full --path city.path --frames 4 --warmup 0 "
+           "--check-holes 4 --check-accuracy 4 --report r.json" SMALL,
            0);
     json_t *report = json_load_file("r.json", 0, NULL);
-    assert_true(number(json_array_get(at(report, "runs"), 0), "holes.max") == 0);
+    json_t *one = json_array_get(at(report, "runs"), 0);
+    assert_true(number(one, "holes.max") == 0);
+    assert_true(number(one, "accuracy.min") == 1 && number(one, "accuracy.predicted") == 1);
+    json_decref(report);
+    expect("bench city.prom --selector coarsest --path city.path --frames 4 --warmup 0 "
+           "--check-accuracy 2 --report r.json" SMALL,
+           0);
+    assert_non_null(strstr(run.out, "\naccuracy "));
+    report = json_load_file("r.json", 0, NULL);
+    one = json_array_get(at(report, "runs"), 0);
+    assert_true(json_is_null(at(one, "holes")));
+    assert_true(number(one, "accuracy.frames") == 2 && number(one, "accuracy.mean") < 1);
+    assert_true(number(one, "accuracy.predicted") < 1);
     json_decref(report);
 }
 
@@ -333,6 +365,7 @@ int main(void)
         cmocka_unit_test(shots_end_with_the_path),
         cmocka_unit_test(shots_measure_the_device_only_if_needed),
         cmocka_unit_test(bench_reports_every_selector),
+        cmocka_unit_test(full_detail_is_accurate),
         cmocka_unit_test(full_draws_at_least_what_coarsest_draws),
         cmocka_unit_test(an_impossible_budget_is_named),
         cmocka_unit_test(damaged_files_are_named),

@@ -71,6 +71,27 @@ static void predictions_are_compared_with_the_drawing(void **state)
     NEAR(s.worst_under, 1.0);
 }
 
+static void comparisons_count_where_they_were_made(void **state)
+{
+    (void)state;
+    prom_frame_record records[4] = {
+        {.holes_checked = true, .holes = 0.25},
+        {.accuracy_checked = true, .accuracy = 0.5, .benefit_px = 30, .loss_px = 10},
+        {.accuracy = 0.1, .holes = 0.9, .benefit_px = 1, .loss_px = 9},
+        {.holes_checked = true, .accuracy_checked = true, .accuracy = 0.75}, // nothing in view
+    };
+    prom_run_statistics s = prom_run_statistics_of(records, 4, 10);
+    assert_int_equal(s.hole_frames, 2);
+    NEAR(s.holes_mean, 0.125);
+    NEAR(s.holes_max, 0.25);
+    assert_int_equal(s.accuracy_frames, 2);
+    NEAR(s.accuracy_mean, 0.625);
+    NEAR(s.accuracy_min, 0.5);
+    NEAR(s.predicted_accuracy, (0.75 + 1.0) / 2);
+    s = prom_run_statistics_of(records + 2, 1, 10);
+    assert_int_equal(s.hole_frames + s.accuracy_frames, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -79,6 +100,7 @@ int main(void)
         cmocka_unit_test(a_percentile_is_never_between_two_frames),
         cmocka_unit_test(misses_are_frames_over_the_budget),
         cmocka_unit_test(predictions_are_compared_with_the_drawing),
+        cmocka_unit_test(comparisons_count_where_they_were_made),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
