@@ -55,8 +55,8 @@ typedef struct prom_container prom_container;
 prom_container *prom_container_open(const char *path, prom_error *error);
 void prom_container_close(prom_container *container); // NULL is allowed
 
-// Loads the tree and its tables. Free with prom_model_finish. Representations of an unknown kind
-// are left out with a warning.
+// Loads the tree and its tables. Free with prom_model_finish. Representations of an unknown
+// kind are left out with a warning.
 prom_status prom_container_load_model(prom_container *container, prom_model *model,
                                       prom_error *error);
 // Load bulk data; `id` is an index into model->meshes or model->textures. The result is checked
@@ -64,8 +64,7 @@ prom_status prom_container_load_model(prom_container *container, prom_model *mod
 prom_status prom_container_read_mesh(prom_container *container, const prom_model *model,
                                      uint32_t id, prom_mesh *mesh, prom_error *error);
 prom_status prom_container_read_texture(prom_container *container, const prom_model *model,
-                                        uint32_t id, prom_texture *texture,
-                                        prom_error *error);
+                                        uint32_t id, prom_texture *texture, prom_error *error);
 // The value of a meta key in memory of the container, or NULL.
 const char *prom_container_meta(prom_container *container, const char *key);
 // Calls `each` for the stages in order.

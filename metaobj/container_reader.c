@@ -3,105 +3,54 @@
 
 #include "metaobj/base/hash.h"
 
-#include <errno.h>
-#include <stdio.h>
-#include <sys/stat.h>
+#include <unistd.h>
 
-#define HEADER_BYTES 100 // of an SQLite file
-
-static uint32_t big_endian(const uint8_t *bytes)
+// Which of the reader's tables a row of the schema makes; PROM_TABLE_COUNT: none. The indices
+// that SQLite makes for unique columns have no text.
+static prom_table table_of(sqlite3_stmt *row)
 {
-    return (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[2] << 8 |
-           bytes[3];
-}
-
-// The header's fields stand at fixed places (sqlite.org/fileformat2.html, section 1.3).
-static prom_status check_header(const uint8_t header[HEADER_BYTES], const char *path,
-                                uint64_t file_bytes, prom_error *error)
-{
-    if (memcmp(header, "SQLite format 3", 16) ||
-        big_endian(header + 68) != PROM_CONTAINER_APPLICATION_ID)
-        return prom_fail(error, PROM_ERR_INPUT,
-                         "%s is not a .prom container; make one with 'promenade build'", path);
-    uint32_t version = big_endian(header + 60);
-    if (version != PROM_CONTAINER_VERSION)
-        return prom_fail(
-            error, PROM_ERR_INPUT, "%s has container format %u, this program reads %u; %s",
-            path, version, PROM_CONTAINER_VERSION,
-            version > PROM_CONTAINER_VERSION ? "use a newer promenade" : "build it again");
-    uint32_t page_bytes = (uint32_t)header[16] << 8 | header[17];
-    if (page_bytes == 1) page_bytes = 65536;
-    uint64_t expected = (uint64_t)page_bytes * big_endian(header + 28);
-    if (expected > file_bytes)
-        return prom_fail(error, PROM_ERR_INPUT,
-                         "%s is cut short at byte %llu of %llu; copy or build it again", path,
-                         (unsigned long long)file_bytes, (unsigned long long)expected);
-    return PROM_OK;
-}
-
-static prom_status check_file(prom_container *c, prom_error *error)
-{
-    struct stat info;
-    if (stat(c->path, &info))
-        return prom_fail(error, PROM_ERR_INPUT, "cannot open %s: %s", c->path, strerror(errno));
-    if (!S_ISREG(info.st_mode))
-        return prom_fail(error, PROM_ERR_INPUT, "%s is no file; name a .prom container",
-                         c->path);
-    FILE *file = fopen(c->path, "rb");
-    if (!file)
-        return prom_fail(error, PROM_ERR_INPUT, "cannot open %s: %s", c->path, strerror(errno));
-    uint8_t header[HEADER_BYTES] = {0};
-    size_t n = fread(header, 1, sizeof header, file);
-    fclose(file);
-    if (n < sizeof header) memset(header, 0, sizeof header);
-    c->file_bytes = (uint64_t)info.st_size;
-    return check_header(header, c->path, c->file_bytes, error);
-}
-
-static prom_status open_database(prom_container *c, prom_error *error)
-{
-    char *name = prom_sqlite_path(c->path);
-    int rc = sqlite3_open_v2(name, &c->db, SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX, NULL);
-    prom_free(name);
-    if (rc == SQLITE_OK) {
-        sqlite3_db_config(c->db, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
-        sqlite3_db_config(c->db, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
-        sqlite3_db_config(c->db, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, NULL);
-        sqlite3_db_config(c->db, SQLITE_DBCONFIG_ENABLE_VIEW, 0, NULL);
-        sqlite3_limit(c->db, SQLITE_LIMIT_LENGTH, (int)PROM_CONTAINER_CHUNK_BYTES + (1 << 20));
-        sqlite3_limit(c->db, SQLITE_LIMIT_ATTACHED, 0);
-        rc = sqlite3_exec(c->db, "PRAGMA cell_size_check=ON; PRAGMA mmap_size=1099511627776;",
-                          NULL, NULL, NULL);
+    const char *type = (const char *)sqlite3_column_text(row, 0);
+    const char *table = (const char *)sqlite3_column_text(row, 1);
+    const char *create = (const char *)sqlite3_column_text(row, 2);
+    for (int t = 0; type && table && t < PROM_TABLE_COUNT; t++) {
+        const prom_table_schema *schema = &prom_tables[t];
+        if (strcmp(table, schema->name)) continue;
+        bool ours = strcmp(type, "table") ? !strcmp(type, "index") && !create
+                                          : create && !strcmp(create, schema->create);
+        if (ours) return (prom_table)t;
     }
-    if (rc == SQLITE_OK) return PROM_OK;
-    return prom_fail(error, PROM_ERR_INPUT, "cannot open %s: %s", c->path,
-                     sqlite3_errmsg(c->db));
+    return PROM_TABLE_COUNT;
 }
 
-// Only the very tables that the writer makes are read: no views, generated columns, or other
-// code of a foreign schema.
+// Only the very tables that the writer makes are read: no views, generated columns, indices or
+// other code of a foreign schema.
 static prom_status check_schema(prom_container *c, prom_error *error)
 {
-    sqlite3_stmt *find;
-    const char *sql = "SELECT sql FROM sqlite_schema WHERE type='table' AND name=?";
-    if (sqlite3_prepare_v2(c->db, sql, -1, &find, NULL) != SQLITE_OK)
+    sqlite3_stmt *rows;
+    const char *sql = "SELECT type,tbl_name,sql FROM sqlite_schema";
+    if (sqlite3_prepare_v2(c->db, sql, -1, &rows, NULL) != SQLITE_OK)
         return prom_container_fail_sqlite(c, "sqlite_schema", 0, error);
+    bool found[PROM_TABLE_COUNT + 1] = {false};
+    int rc, count = 0;
+    // Each of our tables may have an index; a longer schema cannot be ours.
+    while ((rc = sqlite3_step(rows)) == SQLITE_ROW && count++ < 2 * PROM_TABLE_COUNT)
+        found[table_of(rows)] = true;
     prom_status status = PROM_OK;
-    for (int t = 0; t < PROM_TABLE_COUNT && !status; t++) {
-        sqlite3_bind_text(find, 1, prom_tables[t].name, -1, SQLITE_STATIC);
-        int rc = sqlite3_step(find);
-        const char *found =
-            rc == SQLITE_ROW ? (const char *)sqlite3_column_text(find, 0) : NULL;
-        if (rc != SQLITE_ROW && rc != SQLITE_DONE)
-            status = prom_container_fail_sqlite(c, "sqlite_schema", (uint64_t)t, error);
-        else if (!found || strcmp(found, prom_tables[t].create))
+    if (rc == SQLITE_ROW) found[PROM_TABLE_COUNT] = true;
+    if (rc != SQLITE_ROW && rc != SQLITE_DONE)
+        status = prom_container_fail_sqlite(c, "sqlite_schema", (uint64_t)count, error);
+    for (int t = 0; t < PROM_TABLE_COUNT && !status; t++)
+        if (!found[t])
             status = prom_fail(error, PROM_ERR_INPUT,
                                "%s: table %s is missing or not of this format; build the file "
                                "again",
                                c->path, prom_tables[t].name);
-        sqlite3_reset(find);
-    }
-    sqlite3_finalize(find);
+    if (!status && found[PROM_TABLE_COUNT])
+        status = prom_fail(error, PROM_ERR_INPUT,
+                           "%s: it holds tables, views or triggers that are not of this "
+                           "format; build the file again",
+                           c->path);
+    sqlite3_finalize(rows);
     return status;
 }
 
@@ -119,10 +68,7 @@ static prom_status read_row_hashes(prom_container *c, prom_error *error)
         prom_take_int(&row, row.id, row.id);
         if (strcmp(prom_take_text(&row), prom_tables[row.id].name))
             prom_row_refuse(&row, "the table's name is wrong");
-        // A row takes at least 8 bytes of the file; this bounds what is allocated for it.
-        int64_t most = (int64_t)(c->file_bytes / 8);
-        if (most >= PROM_NONE) most = (int64_t)PROM_NONE - 1;
-        c->rows[row.id] = (uint64_t)prom_take_int(&row, 0, most);
+        c->rows[row.id] = (uint64_t)prom_take_int(&row, 0, (int64_t)PROM_NONE - 1);
         c->hash[row.id] = (uint64_t)prom_take_int(&row, INT64_MIN, INT64_MAX);
     }
     prom_status status = row.failed ? PROM_ERR_INPUT : PROM_OK;
@@ -156,10 +102,12 @@ prom_container *prom_container_open(const char *path, prom_error *error)
 {
     prom_container *c = prom_calloc(1, sizeof *c);
     c->path = prom_strdup(path);
-    prom_status status = check_file(c, error);
-    if (!status) status = open_database(c, error);
+    c->fd = -1;
+    prom_status status = prom_container_open_file(c, error);
     if (!status) status = check_schema(c, error);
     if (!status) status = read_row_hashes(c, error);
+    for (int t = 0; t < PROM_TABLE_HASHED && !status; t++)
+        status = prom_container_check_ids(c, (prom_table)t, error);
     if (!status) status = read_meta(c, error);
     if (!status) return c;
     prom_container_close(c);
@@ -171,6 +119,7 @@ void prom_container_close(prom_container *container)
     if (!container) return;
     sqlite3_finalize(container->chunk);
     sqlite3_close(container->db);
+    if (container->fd >= 0) close(container->fd);
     prom_arena_finish(&container->arena);
     prom_free(container->meshes);
     prom_free(container->textures);
@@ -214,8 +163,8 @@ prom_status prom_container_content_hash(prom_container *container, uint64_t *has
     *hash = 0;
     for (int t = 0; t < PROM_TABLE_HASHED; t++) {
         uint64_t rows, table_hash;
-        if (prom_table_hash(container->db, (prom_table)t, prom_tables[t].content, &rows,
-                            &table_hash) != SQLITE_OK)
+        if (prom_table_hash(container->db, (prom_table)t, prom_tables[t].content,
+                            container->file_bytes, &rows, &table_hash) != SQLITE_OK)
             return prom_container_fail_sqlite(container, prom_tables[t].name, rows, error);
         uint64_t both[2] = {rows, table_hash};
         *hash = prom_hash(both, sizeof both, *hash);

@@ -9,9 +9,10 @@ typedef struct prom_bulk_ref {
 } prom_bulk_ref;
 
 struct prom_container {
+    int fd; // open on the file, all that SQLite reads comes through it
     sqlite3 *db;
     char *path;
-    uint64_t file_bytes;
+    uint64_t file_bytes; // bounds all claims of the file
     uint64_t rows[PROM_TABLE_HASHED], hash[PROM_TABLE_HASHED];
     sqlite3_stmt *chunk;
     prom_arena arena; // meta
@@ -19,8 +20,12 @@ struct prom_container {
     const char *(*meta)[2];
     // Filled by prom_container_load_model.
     uint32_t mesh_count, texture_count;
+    uint64_t bulk_bytes; // that all bulk data take in the file at least
     prom_bulk_ref *meshes, *textures;
 };
+
+// Opens container->path: fd, file_bytes, db.
+prom_status prom_container_open_file(prom_container *container, prom_error *error);
 
 // A row being read. Each take_ gives the next column; the first that is not as it should be
 // fills *error, and from then on all give 0.
@@ -47,6 +52,10 @@ const void *prom_take_blob(prom_row_in *row, uint64_t bytes);
 // Marks the row as failed with a reason of the caller's.
 void prom_row_refuse(prom_row_in *row, const char *why);
 
+// Whether a table has as many rows as the writer noted, with ids that count from 0: then memory
+// for them is no more than a small multiple of the file.
+prom_status prom_container_check_ids(prom_container *container, prom_table table,
+                                     prom_error *error);
 // Calls take(user, row) for every row of a table by id; checks that ids count from 0 and that
 // number and hash of the rows are those that the writer noted.
 prom_status prom_container_scan(prom_container *container, prom_table table,

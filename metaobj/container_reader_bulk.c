@@ -3,6 +3,12 @@
 
 #include "metaobj/base/hash.h"
 
+#include <math.h>
+#include <unistd.h>
+
+// Squares of such lengths are finite floats; prom_model_check holds bounds to the same.
+#define POSITION_MAX 1e18f
+
 static prom_status refuse(prom_container *c, const char *table, uint64_t row, const char *why,
                           prom_error *error)
 {
@@ -39,7 +45,9 @@ static prom_status check_chunks(prom_container *c, const prom_stream *stream, ui
         if (status) break;
         int64_t codec = sqlite3_column_int64(statement, 0);
         uint64_t bytes = (uint64_t)sqlite3_column_int64(statement, 1);
-        if (bytes < prom_codec_least_bytes(codec, raw))
+        if (sqlite3_column_type(statement, 0) != SQLITE_INTEGER)
+            status = refuse(c, "chunk", first + i, "its codec is no whole number", error);
+        else if (bytes < prom_codec_least_bytes(codec, raw))
             status = refuse(c, "chunk", first + i, "it is too short for its data", error);
         sqlite3_reset(statement);
     }
@@ -79,6 +87,29 @@ static prom_status decode_stream(prom_container *c, const prom_stream *stream, u
     return PROM_OK;
 }
 
+// Well compressed data may be thousands of times the file: honest for a picture of one colour,
+// and yet too much to try.
+static prom_status check_memory(prom_container *c, const char *table, uint32_t id,
+                                uint64_t bytes, prom_error *error)
+{
+    long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
+    if (pages <= 0 || page_bytes <= 0 || bytes / (uint64_t)page_bytes < (uint64_t)pages)
+        return PROM_OK;
+    return prom_fail(error, PROM_ERR_INPUT,
+                     "%s: table %s, row %u: it needs %.1f GB, more than the memory of this "
+                     "machine",
+                     c->path, table, id, (double)bytes / 1e9);
+}
+
+static const char *check_positions(const prom_mesh *mesh)
+{
+    for (uint32_t v = 0; v < mesh->vertex_count; v++)
+        for (int a = 0; a < 3; a++)
+            if (!(fabsf(mesh->vertices[v].position[a]) <= POSITION_MAX))
+                return "a position is out of range";
+    return NULL;
+}
+
 static prom_status wrong_id(prom_container *c, const char *table, uint32_t id,
                             prom_error *error)
 {
@@ -110,16 +141,20 @@ prom_status prom_container_read_mesh(prom_container *container, const prom_model
     const prom_bulk_ref *ref = &c->meshes[id];
     prom_stream streams[PROM_MESH_STREAMS];
     prom_mesh_streams(info, streams);
-    uint64_t chunk = ref->first_chunk;
-    for (int s = 0; s < PROM_MESH_STREAMS; s++) {
-        prom_status status = check_chunks(c, &streams[s], chunk, error);
-        if (status) return status;
+    uint64_t chunk = ref->first_chunk, bytes = 0;
+    prom_status status = PROM_OK;
+    for (int s = 0; s < PROM_MESH_STREAMS && !status; s++) {
+        status = check_chunks(c, &streams[s], chunk, error);
         chunk += prom_stream_chunks(&streams[s]);
+        bytes += streams[s].count * streams[s].stride;
     }
+    if (!status) status = check_memory(c, "mesh", id, bytes, error);
+    if (status) return status;
     prom_mesh_init(mesh, info->vertex_count, info->index_count, info->submesh_count);
-    prom_status status = decode_mesh(c, ref, streams, mesh, error);
+    status = decode_mesh(c, ref, streams, mesh, error);
     if (!status) {
         const char *wrong = prom_mesh_check(mesh, model->material_count);
+        if (!wrong) wrong = check_positions(mesh);
         if (!wrong && prom_mesh_hash(mesh, 0) != ref->content_hash)
             wrong = "its content does not match its hash";
         if (wrong) status = refuse(c, "mesh", id, wrong, error);
@@ -142,6 +177,7 @@ prom_status prom_container_read_texture(prom_container *container, const prom_mo
     if (!bytes) return refuse(c, "texture", id, "its kind or size is out of range", error);
     prom_stream stream = prom_texture_stream(bytes);
     prom_status status = check_chunks(c, &stream, ref->first_chunk, error);
+    if (!status) status = check_memory(c, "texture", id, bytes, error);
     if (status) return status;
     t.pixels = prom_alloc(bytes, 1);
     status = decode_stream(c, &stream, ref->first_chunk, t.pixels, error);

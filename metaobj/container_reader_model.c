@@ -21,11 +21,16 @@ typedef struct loader {
     PROM_ARRAY(share_row) shares;
 } loader;
 
-// More bulk data than the file can hold: refused here, before anybody adds the counts up.
+// More bulk data than the file can hold: refused here, before anybody adds the counts up. What
+// all rows claim counts together, as rows that share their chunks would be a bomb too.
 static void bound_raw_bytes(prom_row_in *row, uint64_t least_bytes)
 {
-    if (least_bytes > row->container->file_bytes)
+    prom_container *c = row->container;
+    if (row->failed) return;
+    if (least_bytes > c->file_bytes || c->bulk_bytes > c->file_bytes - least_bytes)
         prom_row_refuse(row, "it claims more data than the file holds");
+    else
+        c->bulk_bytes += least_bytes;
 }
 
 static void take_mesh(void *user, prom_row_in *row)
@@ -218,6 +223,7 @@ static void allocate(loader *l)
     m->meshes = prom_arena_alloc(a, m->mesh_count, sizeof *m->meshes);
     m->texture_count = c->texture_count = (uint32_t)c->rows[PROM_TABLE_TEXTURE];
     m->textures = prom_arena_alloc(a, m->texture_count, sizeof *m->textures);
+    c->bulk_bytes = 0;
     prom_free(c->meshes);
     prom_free(c->textures);
     c->meshes = prom_calloc(m->mesh_count, sizeof *c->meshes);

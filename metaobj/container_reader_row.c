@@ -7,12 +7,26 @@
 
 #define ADVICE "the file is damaged: build it again"
 
+// SQLite's own texts speak of disk images, and may quote a hostile schema.
+static const char *why_sqlite_failed(sqlite3 *db)
+{
+    switch (sqlite3_errcode(db) & 0xff) {
+    case SQLITE_IOERR:
+        return "it cannot be read; if the file did not change meanwhile, the disk fails";
+    case SQLITE_TOOBIG:
+        return "it claims more data than a row can hold; " ADVICE;
+    case SQLITE_NOMEM:
+        return "there is not enough memory to read it";
+    default:
+        return "its pages are damaged; copy or build the file again";
+    }
+}
+
 prom_status prom_container_fail_sqlite(prom_container *container, const char *table,
                                        uint64_t row, prom_error *error)
 {
-    return prom_fail(error, PROM_ERR_INPUT, "%s: table %s, row %llu: %s; " ADVICE,
-                     container->path, table, (unsigned long long)row,
-                     sqlite3_errmsg(container->db));
+    return prom_fail(error, PROM_ERR_INPUT, "%s: table %s, row %llu: %s", container->path,
+                     table, (unsigned long long)row, why_sqlite_failed(container->db));
 }
 
 void prom_row_refuse(prom_row_in *row, const char *why)
@@ -128,6 +142,41 @@ const void *prom_take_blob(prom_row_in *row, uint64_t bytes)
     return row->failed ? NULL : blob;
 }
 
+// Steps to the next row and checks its number.
+static int next_row(prom_row_in *row, uint64_t index)
+{
+    int rc = sqlite3_step(row->statement);
+    if (rc != SQLITE_ROW) return rc;
+    row->id = (uint32_t)index;
+    row->column = 0;
+    if (index >= row->container->rows[row->table])
+        prom_row_refuse(row, "there is a row too many");
+    prom_take_int(row, row->id, row->id);
+    return rc;
+}
+
+prom_status prom_container_check_ids(prom_container *container, prom_table table,
+                                     prom_error *error)
+{
+    const char *name = prom_tables[table].name;
+    char *sql = prom_format("SELECT id FROM %s ORDER BY id", name);
+    prom_row_in row = {.container = container, .table = table, .error = error};
+    int rc = sqlite3_prepare_v2(container->db, sql, -1, &row.statement, NULL);
+    prom_free(sql);
+    if (rc != SQLITE_OK) return prom_container_fail_sqlite(container, name, 0, error);
+    uint64_t rows = 0;
+    while ((rc = next_row(&row, rows)) == SQLITE_ROW && !row.failed) rows++;
+    prom_status status = row.failed ? PROM_ERR_INPUT : PROM_OK;
+    if (!status && rc != SQLITE_DONE)
+        status = prom_container_fail_sqlite(container, name, rows, error);
+    if (!status && rows != container->rows[table])
+        status = prom_fail(error, PROM_ERR_INPUT, "%s: table %s has %llu rows of %llu; " ADVICE,
+                           container->path, name, (unsigned long long)rows,
+                           (unsigned long long)container->rows[table]);
+    sqlite3_finalize(row.statement);
+    return status;
+}
+
 prom_status prom_container_scan(prom_container *container, prom_table table,
                                 void (*take)(void *user, prom_row_in *row), void *user,
                                 prom_error *error)
@@ -138,12 +187,11 @@ prom_status prom_container_scan(prom_container *container, prom_table table,
     int rc = sqlite3_prepare_v2(container->db, sql, -1, &row.statement, NULL);
     prom_free(sql);
     if (rc != SQLITE_OK) return prom_container_fail_sqlite(container, name, 0, error);
-    uint64_t hash = 0, rows = 0;
-    while (!row.failed && (rc = sqlite3_step(row.statement)) == SQLITE_ROW) {
-        row.id = (uint32_t)rows;
-        row.column = 0;
-        if (rows >= container->rows[table]) prom_row_refuse(&row, "there is a row too many");
-        prom_take_int(&row, row.id, row.id);
+    uint64_t hash = 0, rows = 0, bytes = 0;
+    while (!row.failed && (rc = next_row(&row, rows)) == SQLITE_ROW) {
+        bytes += prom_row_bytes(row.statement);
+        if (bytes > container->file_bytes)
+            prom_row_refuse(&row, "the rows hold more data than the file");
         if (!row.failed) take(user, &row);
         hash = prom_row_hash(row.statement, hash);
         rows++;

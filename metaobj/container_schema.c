@@ -124,9 +124,21 @@ uint64_t prom_row_hash(sqlite3_stmt *row, uint64_t seed)
     return prom_hash(values, (size_t)used * sizeof *values, seed);
 }
 
-int prom_table_hash(sqlite3 *db, prom_table table, const char *columns, uint64_t *rows,
-                    uint64_t *hash)
+uint64_t prom_row_bytes(sqlite3_stmt *row)
 {
+    uint64_t bytes = 0;
+    for (int c = sqlite3_column_count(row); c-- > 0;) {
+        int type = sqlite3_column_type(row, c);
+        if (type == SQLITE_TEXT || type == SQLITE_BLOB)
+            bytes += (uint64_t)sqlite3_column_bytes(row, c);
+    }
+    return bytes;
+}
+
+int prom_table_hash(sqlite3 *db, prom_table table, const char *columns, uint64_t most_bytes,
+                    uint64_t *rows, uint64_t *hash)
+{
+    uint64_t bytes = 0;
     char sql[256];
     snprintf(sql, sizeof sql, "SELECT %s FROM %s ORDER BY id", columns ? columns : "*",
              prom_tables[table].name);
@@ -135,11 +147,13 @@ int prom_table_hash(sqlite3 *db, prom_table table, const char *columns, uint64_t
     *rows = *hash = 0;
     if (rc != SQLITE_OK) return rc;
     while ((rc = sqlite3_step(statement)) == SQLITE_ROW) {
+        bytes += prom_row_bytes(statement);
+        if (bytes > most_bytes) break;
         *hash = prom_row_hash(statement, *hash);
         ++*rows;
     }
     sqlite3_finalize(statement);
-    return rc == SQLITE_DONE ? SQLITE_OK : rc;
+    return rc == SQLITE_DONE ? SQLITE_OK : rc == SQLITE_ROW ? SQLITE_TOOBIG : rc;
 }
 
 char *prom_sqlite_path(const char *path)

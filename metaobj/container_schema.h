@@ -35,10 +35,13 @@ extern const prom_table_schema prom_tables[PROM_TABLE_COUNT];
 
 // Hash of a row's values (types included), chained from `seed`.
 uint64_t prom_row_hash(sqlite3_stmt *row, uint64_t seed);
+// Bytes of a row's texts and blobs.
+uint64_t prom_row_bytes(sqlite3_stmt *row);
 // Counts and hashes all rows of a table in the order of their ids; `columns` NULL for all.
-// Returns an SQLite result code.
-int prom_table_hash(sqlite3 *db, prom_table table, const char *columns, uint64_t *rows,
-                    uint64_t *hash);
+// Returns an SQLite result code: SQLITE_TOOBIG when texts and blobs have over `most_bytes`
+// together, as rows that share their pages could claim.
+int prom_table_hash(sqlite3 *db, prom_table table, const char *columns, uint64_t most_bytes,
+                    uint64_t *rows, uint64_t *hash);
 // A name for SQLite that it cannot take for ":memory:" or a URI; free it.
 char *prom_sqlite_path(const char *path);
 

@@ -165,7 +165,7 @@ static prom_status write_row_hashes(prom_writer *w, prom_error *error)
 {
     for (int t = 0; t < PROM_TABLE_HASHED; t++) {
         uint64_t rows, hash;
-        if (prom_table_hash(w->db, (prom_table)t, NULL, &rows, &hash) != SQLITE_OK)
+        if (prom_table_hash(w->db, (prom_table)t, NULL, UINT64_MAX, &rows, &hash) != SQLITE_OK)
             return prom_writer_fail(w, error);
         prom_row_out row = prom_row_begin(w, PROM_TABLE_ROWS);
         prom_put_text(&row, prom_tables[t].name);

@@ -4,14 +4,26 @@
 
 #include "metaobj/texture.h"
 
-static bool finite_floats(const float *v, size_t count)
+// Squares of lengths up to this are finite floats, and sums and differences of places finite
+// doubles, so that who computes with a model meets no infinities. (By taste.)
+#define LENGTH_MAX 1e18
+// Choices of a prototype: the walk's memory is one for each, at every node that is drawn with
+// it, so that a small file could ask for any amount. Builds make a dozen. (By taste.)
+#define REPS_MAX 256
+
+static bool good_lengths(const float *v, size_t count)
 {
     for (size_t i = 0; i < count; i++)
-        if (!isfinite(v[i])) return false;
+        if (!((double)fabsf(v[i]) <= LENGTH_MAX)) return false;
     return true;
 }
 
-static bool finite_doubles(const double *v, size_t count)
+static bool good_place(const double v[3])
+{
+    return fabs(v[0]) <= LENGTH_MAX && fabs(v[1]) <= LENGTH_MAX && fabs(v[2]) <= LENGTH_MAX;
+}
+
+static bool finite_floats(const float *v, size_t count)
 {
     for (size_t i = 0; i < count; i++)
         if (!isfinite(v[i])) return false;
@@ -21,7 +33,7 @@ static bool finite_doubles(const double *v, size_t count)
 static bool good_bounds(const float half[3], float radius)
 {
     return half[0] >= 0 && half[1] >= 0 && half[2] >= 0 && radius >= 0 &&
-           finite_floats(half, 3) && isfinite(radius);
+           good_lengths(half, 3) && good_lengths(&radius, 1);
 }
 
 static const char *check_arrays(const prom_model *m)
@@ -84,7 +96,8 @@ static const char *check_rep(const prom_model *m, const prom_representation *r)
     if (r->mesh >= m->mesh_count) return "a representation's mesh is out of range";
     const char *wrong = check_pictures(m, r);
     if (wrong) return wrong;
-    if (!(r->error >= 0) || !isfinite(r->error)) return "a representation's error is no length";
+    if (!(r->error >= 0) || !good_lengths(&r->error, 1))
+        return "a representation's error is no length";
     if (!(r->max_size_px > 0)) return "a representation's largest size is not above 0";
     if (!(r->switch_distance > 0)) return "a representation's switch_distance is not above 0";
     if (!(r->near_k >= 0) || !isfinite(r->near_k))
@@ -106,8 +119,9 @@ static const char *check_prototype(const prom_model *m, const prom_prototype *p,
         return "a prototype's representations are out of range";
     for (uint32_t r = 0; r < p->rep_count; r++)
         if (owned[p->first_rep + r]++) return "a representation belongs to two prototypes";
-    if (!finite_floats(p->center, 3) || !good_bounds(p->half, p->radius))
-        return "a prototype's bounds are not finite or negative";
+    if (p->rep_count > REPS_MAX) return "a prototype has too many representations";
+    if (!good_lengths(p->center, 3) || !good_bounds(p->half, p->radius))
+        return "a prototype's bounds are out of range or negative";
     if (!(p->flags & PROM_PROTO_CLUSTER) != !p->child_count)
         return "a prototype's cluster flag does not fit its child count";
     if (!p->child_count) {
@@ -145,10 +159,10 @@ static const char *check_node(const prom_model *m, uint32_t n, uint32_t *next_ch
     if (m->prototypes[m->prototype[n]].child_count != m->child_count[n])
         return "a node has not as many children as its prototype";
     if (m->name[n] >= m->names_bytes) return "a node's name is out of range";
-    if (!finite_doubles(m->placement[n].origin, 3) || !finite_floats(m->placement[n].basis, 9))
-        return "a node's placement is not finite";
-    if (!finite_doubles(m->center[n], 3) || !good_bounds(m->half[n], m->radius[n]))
-        return "a node's bounds are not finite or negative";
+    if (!good_place(m->placement[n].origin) || !good_lengths(m->placement[n].basis, 9))
+        return "a node's placement is out of range";
+    if (!good_place(m->center[n]) || !good_bounds(m->half[n], m->radius[n]))
+        return "a node's bounds are out of range or negative";
     return NULL;
 }
 

@@ -20,8 +20,10 @@ static void assert_ok(prom_status status, const prom_error *error)
 static void run_sql(const char *path, const char *sql)
 {
     sqlite3 *db;
+    char *text = NULL;
     assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
-    assert_int_equal(sqlite3_exec(db, sql, NULL, NULL, NULL), SQLITE_OK);
+    if (sqlite3_exec(db, sql, NULL, NULL, &text) != SQLITE_OK)
+        fail_msg("%s: %s", sql, text ? text : "?");
     sqlite3_close(db);
 }
 
@@ -51,6 +53,15 @@ static void refuses_changed_files(void **state)
         {"DROP TABLE node; CREATE VIEW node AS SELECT * FROM mesh", "table node is missing"},
         {"ALTER TABLE node ADD COLUMN more TEXT",
          "table node is missing or not of this format"},
+        {"CREATE VIEW more AS SELECT * FROM node", "not of this format"},
+        {"CREATE TRIGGER t AFTER INSERT ON node BEGIN DELETE FROM mesh; END",
+         "not of this format"},
+        {"CREATE INDEX i ON accuracy(id,value)", "not of this format"},
+        {"CREATE VIRTUAL TABLE v USING fts4(x)", "not of this format"},
+        {"CREATE TABLE more(x)", "not of this format"},
+        {"PRAGMA page_size=4096; PRAGMA journal_mode=DELETE; VACUUM", "header is damaged"},
+        {"PRAGMA auto_vacuum=FULL; VACUUM", "header is damaged"},
+        {"PRAGMA journal_mode=WAL", "has a write-ahead log"},
         {"UPDATE node SET prototype=99 WHERE id=5", "table node"},
         {"UPDATE node SET first_child=-1 WHERE id=1", "table node, row 1: first_child is out"},
         {"UPDATE node SET radius=9e999 WHERE id=2", "table node, row 2: radius is not finite"},
@@ -67,7 +78,8 @@ static void refuses_changed_files(void **state)
          "table chunk, row 4: its data do not"},
         {"DELETE FROM chunk WHERE id=7", "table chunk, row 7: the row is missing"},
         {"UPDATE chunk SET codec=9 WHERE id=0", "table chunk, row 0"},
-        {"UPDATE table_rows SET row_count=4000000000 WHERE id=1", "table table_rows, row 1"},
+        {"UPDATE table_rows SET row_count=4000000000 WHERE id=1",
+         "table node has 17 rows of 4000000000"},
         {"DELETE FROM table_rows WHERE id=9", "table table_rows, row 9: the row is missing"},
         {"UPDATE meta SET value='other'", "table meta"},
     };
@@ -83,7 +95,7 @@ static void rewrite(const char *path, const char *sql, prom_table table)
     sqlite3 *db;
     uint64_t rows, hash;
     assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
-    assert_int_equal(prom_table_hash(db, table, NULL, &rows, &hash), SQLITE_OK);
+    assert_int_equal(prom_table_hash(db, table, NULL, UINT64_MAX, &rows, &hash), SQLITE_OK);
     sqlite3_close(db);
     char *update = prom_format("UPDATE table_rows SET row_count=%lld, hash=%lld WHERE id=%d",
                                (long long)rows, (long long)hash, (int)table);
@@ -142,10 +154,13 @@ static void hostile_rows(void **state)
         {"UPDATE node SET parent=NULL WHERE id=3", PROM_TABLE_NODE},
         {"UPDATE node SET background=1 WHERE id=3", PROM_TABLE_NODE},
         {"UPDATE node SET half_x=1e300 WHERE id=3", PROM_TABLE_NODE},
+        {"UPDATE node SET origin_x=1e300 WHERE id=3", PROM_TABLE_NODE},
+        {"UPDATE node SET basis_xy=1e30 WHERE id=3", PROM_TABLE_NODE},
         {"UPDATE node SET name=CAST(x'610062' AS TEXT) WHERE id=3", PROM_TABLE_NODE},
         {"DELETE FROM node", PROM_TABLE_NODE},
         {"UPDATE prototype SET radius=-1 WHERE id=0", PROM_TABLE_PROTOTYPE},
         {"UPDATE prototype SET flags=0 WHERE id=1", PROM_TABLE_PROTOTYPE},
+        {"UPDATE prototype SET center_z=-1e20 WHERE id=0", PROM_TABLE_PROTOTYPE},
         {"DELETE FROM prototype WHERE id=3", PROM_TABLE_PROTOTYPE},
         {"UPDATE representation SET mesh=4 WHERE id=0", PROM_TABLE_REPRESENTATION},
         {"UPDATE representation SET texture=0 WHERE id=2", PROM_TABLE_REPRESENTATION},
@@ -155,11 +170,14 @@ static void hostile_rows(void **state)
         {"UPDATE representation SET shading=5 WHERE id=0", PROM_TABLE_REPRESENTATION},
         {"UPDATE representation SET max_size_px=0 WHERE id=0", PROM_TABLE_REPRESENTATION},
         {"UPDATE representation SET near_k=-1 WHERE id=0", PROM_TABLE_REPRESENTATION},
+        {"UPDATE representation SET error=1e19 WHERE id=1", PROM_TABLE_REPRESENTATION},
+        {"UPDATE representation SET switch_distance=0 WHERE id=0", PROM_TABLE_REPRESENTATION},
         {"DELETE FROM accuracy WHERE id=5", PROM_TABLE_ACCURACY},
         {"UPDATE mesh SET index_count=index_count+1 WHERE id=0", PROM_TABLE_MESH},
         {"UPDATE mesh SET vertex_count=vertex_count-1 WHERE id=0", PROM_TABLE_MESH},
         {"UPDATE mesh SET first_chunk=3 WHERE id=0", PROM_TABLE_MESH},
         {"UPDATE mesh SET first_chunk=9223372036854775807 WHERE id=0", PROM_TABLE_MESH},
+        {"UPDATE mesh SET vertex_count=4294967295, first_chunk=0", PROM_TABLE_MESH},
         {"DELETE FROM mesh", PROM_TABLE_MESH},
         {"UPDATE texture SET levels=3 WHERE id=0", PROM_TABLE_TEXTURE},
         {"UPDATE texture SET width=8192,height=8192,levels=14 WHERE id=1", PROM_TABLE_TEXTURE},
