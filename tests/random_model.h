@@ -40,9 +40,10 @@ typedef struct random_model_options {
     uint32_t max_children;
     float extent;        // half edge of the world
     float bare_clusters; // part of the clusters without representations
+    float artists;       // part of the objects whose artist gave levels
 } random_model_options;
 
-enum { RANDOM_REPS_MAX = 7 };
+enum { RANDOM_REPS_MAX = 11 };
 
 static inline void random_rotation(uint64_t *seed, float scale, bool mirror, float basis[9])
 {
@@ -112,16 +113,33 @@ static inline void random_prototype(prom_model *m, uint64_t *seed, uint32_t chil
     m->prototype_count++;
 }
 
-static inline void random_reps(prom_model *m, uint64_t *seed, bool cluster)
+// Appends a level by an artist, which may have more triangles than the level before it.
+static inline void random_add_artist_level(prom_model *m, uint64_t *seed, uint32_t level,
+                                           float error, uint32_t triangles, float quality)
+{
+    float until = m->reps[m->rep_count - 1].switch_distance;
+    for (uint32_t r = m->rep_count; !isfinite(until);) until = m->reps[--r].switch_distance;
+    random_add_rep(m, seed, PROM_REP_MESH, level, error,
+                   triangles / 2 + random_below(seed, triangles), quality);
+    prom_representation *r = &m->reps[m->rep_count - 1];
+    r->flags |= PROM_REP_ARTIST;
+    r->switch_distance = until * random_between(seed, 1.2f, 4.0f);
+    if (!random_below(seed, 4)) r->max_size_px = random_between(seed, 16, 400);
+}
+
+static inline void random_reps(prom_model *m, uint64_t *seed, bool cluster, bool artist)
 {
     prom_prototype *p = &m->prototypes[m->prototype_count - 1];
     uint32_t triangles = 40 + random_below(seed, 4000), levels = 1 + random_below(seed, 4);
     float error = cluster ? 0.05f * p->radius : 0.0f, quality = cluster ? 0.9f : 1.0f;
     for (uint32_t l = 0; l < levels; l++) {
         random_add_rep(m, seed, PROM_REP_MESH, l, error, triangles, quality);
+        if (artist && !l) m->reps[p->first_rep].switch_distance = random_between(seed, 2, 200);
         triangles = triangles / (2 + random_below(seed, 3)) + 4;
         error = (error + 0.01f * p->radius) * 1.7f;
         quality *= random_between(seed, 0.85f, 0.99f);
+        if (artist && random_below(seed, 3))
+            random_add_artist_level(m, seed, l + 1, error, triangles, quality);
     }
     if (random_below(seed, 3))
         random_add_rep(m, seed, PROM_REP_TEXTURED_BOX, 0, 0.3f * p->radius, 12, 0.8f * quality);
@@ -178,7 +196,8 @@ static inline void random_model(prom_model *m, uint64_t seed, const random_model
     random_allocate(m, capacity, capacity + shared);
     for (uint32_t i = 0; i < shared; i++) {
         random_prototype(m, &seed, 0);
-        random_reps(m, &seed, false);
+        bool artist = o->artists > 0.0f && random_unit(&seed) < o->artists;
+        random_reps(m, &seed, false, artist);
     }
     uint32_t count = 1, open = 1, leaves = 0; // nodes numbered, without a role yet, leaves
     m->parent[0] = PROM_NONE;
@@ -198,7 +217,7 @@ static inline void random_model(prom_model *m, uint64_t seed, const random_model
             open += children;
             m->prototype[n] = m->prototype_count;
             random_prototype(m, &seed, children);
-            if (random_unit(&seed) >= o->bare_clusters) random_reps(m, &seed, true);
+            if (random_unit(&seed) >= o->bare_clusters) random_reps(m, &seed, true, false);
         } else {
             m->prototype[n] = random_below(&seed, shared);
             m->child_count[n] = 0;

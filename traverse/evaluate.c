@@ -100,7 +100,8 @@ static void add_options(prom_eval *eval, uint32_t node)
         const prom_representation *r = &m->reps[rep];
         bool is_mesh = r->kind == PROM_REP_MESH;
         if (!is_mesh && n->near_case) continue;
-        if (!((is_mesh ? size : n->size_px) <= r->max_size_px)) continue;
+        bool too_large = !((is_mesh ? size : n->size_px) <= r->max_size_px);
+        if (too_large && !(eval->any_size && eval->any_size[rep])) continue;
         eval->options[eval->option_count++] = (prom_option){
             .rep = rep,
             .benefit = n->px * prom_accuracy(m, rep, n->dir, size, p->radius),

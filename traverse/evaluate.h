@@ -44,9 +44,11 @@ typedef struct prom_eval {
     uint32_t visited_count;
     prom_option *options;
     uint32_t option_count;
-    double fixed_ms;     // fixed part of the frame and the background layer
-    float tolerance;     // factor on what prom_eval_open_visible takes for invisible
-    float *in_view, *px; // of the children of one node
+    double fixed_ms;      // fixed part of the frame and the background layer
+    const bool *any_size; // per representation: valid whatever its max_size_px says, the
+                          // selector knows better; NULL: none. The selector's own
+    float tolerance;      // factor on what prom_eval_open_visible takes for invisible
+    float *in_view, *px;  // of the children of one node
     uint32_t max_children;
 } prom_eval;
 
