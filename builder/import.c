@@ -147,6 +147,12 @@ static bool out_of_memory(const channel *c)
     return strstr(text, "out of memory") || strstr(text, "bad_alloc");
 }
 
+// Processor time stands still in a loader that waits: so much by the wall clock.
+static uint32_t wall_limit_s(const prom_import_options *options)
+{
+    return options->time_s < UINT32_MAX / 2 - 2 ? options->time_s * 2 + 2 : UINT32_MAX;
+}
+
 static prom_status failed(const char *path, const prom_import_options *options,
                           const channel *c, int state, bool in_time, prom_error *error)
 {
@@ -155,9 +161,10 @@ static prom_status failed(const char *path, const prom_import_options *options,
     int signal_number = WIFSIGNALED(state) ? WTERMSIG(state) : 0;
     if (!in_time || signal_number == SIGXCPU)
         return prom_fail(error, PROM_ERR_INPUT,
-                         "%s: the loader did not end within %u s of processor time while %s; "
-                         "the file is damaged or too large",
-                         path, options->time_s, doing);
+                         "%s: the loader did not end within %u s%s while %s; the file is "
+                         "damaged or too large",
+                         path, in_time ? options->time_s : wall_limit_s(options),
+                         in_time ? " of processor time" : " by the clock", doing);
     if (out_of_memory(c))
         return prom_fail(error, PROM_ERR_INPUT,
                          "%s: the loader ran out of memory (limit %llu MiB) while %s; the file "
@@ -208,8 +215,7 @@ static prom_status run(const char *path, const prom_import_options *options,
                            path, strerror(errno));
     } else {
         int state = 0;
-        // Processor time stands still in a loader that waits: twice that by the wall clock.
-        bool in_time = wait_for(pid, options->time_s * 2.0 + 2.0, &state);
+        bool in_time = wait_for(pid, wall_limit_s(options), &state);
         bool good = in_time && WIFEXITED(state) && WEXITSTATUS(state) == 0;
         status = good ? unpack(path, &c, source, error)
                       : failed(path, options, &c, state, in_time, error);
@@ -228,6 +234,12 @@ prom_status prom_source_import(const char *path, const prom_import_options *opti
     if (!o.time_s) o.time_s = DEFAULT_TIME_S;
     if (o.max_texture_px > PROM_TEXTURE_MAX) o.max_texture_px = PROM_TEXTURE_MAX;
     *source = (prom_source){0};
+    if (o.unit_m < 0 || !(o.unit_m < 1e9) || (o.unit_m > 0 && o.unit_m < 1e-9))
+        return prom_fail(error, PROM_ERR_USAGE,
+                         "import: a unit of %g m is no length; give metres, say 0.0254",
+                         o.unit_m);
+    if (o.up > PROM_UP_Z)
+        return prom_fail(error, PROM_ERR_USAGE, "import: %u is no axis", (unsigned)o.up);
     struct stat info;
     if (stat(path, &info))
         return prom_fail(error, PROM_ERR_INPUT, "%s: %s", path, strerror(errno));

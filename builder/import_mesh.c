@@ -150,3 +150,33 @@ bool prom_import_mesh_read(const struct aiMesh *mesh, const prom_import_mesh_opt
     prom_free(indices);
     return true;
 }
+
+void prom_import_mesh_transform(prom_mesh *mesh, const double m[16])
+{
+    float normal[9]; // cofactors: good for flattened matrices too
+    double det = 0;
+    for (int i = 0; i < 3; i++) {
+        double c[3];
+        for (int r = 0; r < 3; r++) {
+            const double *a = m + 4 * ((i + 1) % 3), *b = m + 4 * ((i + 2) % 3);
+            c[r] = a[(r + 1) % 3] * b[(r + 2) % 3] - a[(r + 2) % 3] * b[(r + 1) % 3];
+        }
+        if (!i) det = m[0] * c[0] + m[1] * c[1] + m[2] * c[2];
+        for (int r = 0; r < 3; r++) normal[3 * i + r] = (float)(det < 0 ? -c[r] : c[r]);
+    }
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        prom_vertex *out = &mesh->vertices[v];
+        double p[3] = {out->position[0], out->position[1], out->position[2]};
+        float n[3] = {out->normal[0], out->normal[1], out->normal[2]}, turned[3];
+        for (int r = 0; r < 3; r++)
+            out->position[r] =
+                (float)(m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]);
+        prom_basis_apply(normal, n, turned);
+        prom_pack_normal(turned, out->normal);
+    }
+    for (uint32_t i = 0; det < 0 && i < mesh->index_count; i += 3) {
+        uint32_t second = mesh->indices[i + 1];
+        mesh->indices[i + 1] = mesh->indices[i + 2];
+        mesh->indices[i + 2] = second;
+    }
+}

@@ -1,11 +1,16 @@
 // Private to import: what its pieces share. import.c runs the child and judges its end;
-// everything that touches the foreign file (import_scene.c, import_mesh.c, import_material.c,
-// import_image.c) runs in the child; import_wire.c carries the result over.
+// everything that touches the foreign file (import_gltf*.c, import_file.c, import_scene.c,
+// import_levels.c, import_axes.c, import_mesh.c, import_material.c) runs in the child, and
+// decoding of pictures (import_image.c) in children of its own (import_workers.c);
+// import_wire.c carries the result over.
 #ifndef PROM_BUILDER_IMPORT_PARTS_H
 #define PROM_BUILDER_IMPORT_PARTS_H
 
+#include "builder/import_gltf.h"
 #include "builder/source.h"
 
+#include <assimp/cfileio.h>
+#include <assimp/cimport.h>
 #include <assimp/scene.h>
 #include <stdio.h>
 
@@ -14,8 +19,11 @@ typedef struct prom_import {
     const char *path;
     prom_import_options options; // zeros replaced by the defaults
     const struct aiScene *scene;
-    bool gltf;           // colours and factors are linear, alpha modes are given
-    prom_source *source; // the result
+    bool gltf;                         // colours and factors are linear, alpha modes are given
+    prom_gltf gltf_file;               // what was read before assimp, empty for other formats
+    double unit;                       // distances of the file to those of the source
+    PROM_ARRAY(uint32_t) node_numbers; // per node of the source, while gltf_file.numbered
+    prom_source *source;               // the result
     PROM_ARRAY(char *) warnings;
     char *doing; // PROM_IMPORT_DOING bytes that the parent can read after a crash
 } prom_import;
@@ -33,6 +41,20 @@ void prom_import_warn(prom_import *import, const char *format, ...)
 // import_scene.c: reads the file into import->source.
 prom_status prom_import_run(prom_import *import, prom_error *error);
 
+void prom_import_multiply(const double a[16], const double b[16], double out[16]); // a b
+
+// import_file.c: assimp's way to files; lives as long as `import`.
+struct aiFileIO prom_import_files(prom_import *import);
+
+// import_axes.c: up axis and unit. prepare: before reading, what loaders are to do about them.
+// apply: to the root's matrix, after reading; sets import->unit.
+void prom_import_axes_prepare(const prom_import *import, struct aiPropertyStore *settings);
+void prom_import_axes_apply(prom_import *import, double root[16]);
+
+// import_levels.c: once nodes and meshes are read, puts the levels that import_gltf_lod.c found
+// where they belong.
+void prom_import_levels_attach(prom_import *import);
+
 // import_mesh.c: how the vertices of a mesh are to be read.
 typedef struct prom_import_mesh_options {
     uint32_t uv_channel;
@@ -44,6 +66,9 @@ typedef struct prom_import_mesh_options {
 // left. *dropped grows by the triangles left out because a vertex is not finite.
 bool prom_import_mesh_read(const struct aiMesh *mesh, const prom_import_mesh_options *options,
                            prom_mesh *out, uint64_t *dropped);
+
+// Applies an affine matrix, column-major.
+void prom_import_mesh_transform(prom_mesh *mesh, const double m[16]);
 
 // import_normals.c: a unit normal per corner, angle-weighted over the faces around its vertex
 // (Thuermer and Wuethrich 1998) that lie within the crease angle. Vertices at equal positions

@@ -1,10 +1,11 @@
 #include "builder/import_parts.h"
 
 #include <assimp/GltfMaterial.h>
-#include <assimp/cimport.h>
 #include <assimp/postprocess.h>
+#include <limits.h>
 #include <pthread.h>
 #include <stdarg.h>
+#include <stdlib.h>
 #include <strings.h>
 
 // Beyond this a file is taken for damaged (by taste).
@@ -69,27 +70,46 @@ static const char *extension(const char *path)
     return dot ? dot : "";
 }
 
+static prom_status refused(const prom_import *import, prom_error *error)
+{
+    const char *why = aiGetErrorString(), *dot = extension(import->path);
+    if (!why || !*why) why = "the loader gives no reason";
+    if (strstr(why, "bad_alloc")) why = "the loader ran out of memory";
+    if (strstr(why, "No suitable reader")) why = "it is not of the format that its name says";
+    if (!aiIsExtensionSupported(*dot ? dot : "."))
+        return prom_fail(error, PROM_ERR_INPUT,
+                         "%s: is of no known scene format; give glTF, GLB, OBJ, PLY, FBX, "
+                         "Collada, 3DS, STL or AC3D",
+                         import->path);
+    return damaged(import, why, error);
+}
+
+static const struct aiScene *read_file(prom_import *import)
+{
+    struct aiFileIO files = prom_import_files(import);
+    struct aiPropertyStore *settings = aiCreatePropertyStore();
+    if (settings) prom_import_axes_prepare(import, settings);
+    const struct aiScene *scene =
+        aiImportFileExWithProperties(import->path, 0, &files, settings);
+    if (settings) aiReleasePropertyStore(settings);
+    return scene;
+}
+
 static prom_status open_scene(prom_import *import, prom_error *error)
 {
+    prom_status status = prom_gltf_read(import, &import->gltf_file, error);
+    if (status) return status;
     prom_import_doing(import, "reading the file");
-    import->scene = aiImportFile(import->path, 0);
-    if (!import->scene) {
-        const char *why = aiGetErrorString(), *dot = extension(import->path);
-        if (!why || !*why) why = "the loader gives no reason";
-        if (strstr(why, "bad_alloc")) why = "the loader ran out of memory";
-        if (strstr(why, "No suitable reader"))
-            why = "it is not of the format that its name says";
-        if (!aiIsExtensionSupported(*dot ? dot : "."))
-            return prom_fail(error, PROM_ERR_INPUT,
-                             "%s: is of no known scene format; give glTF, GLB, OBJ or PLY",
-                             import->path);
-        return damaged(import, why, error);
-    }
-    prom_status status = check_meshes(import, error);
+    import->scene = read_file(import);
+    if (!import->scene) return refused(import, error);
+    prom_free(import->gltf_file.text.data);
+    import->gltf_file.text = (prom_bytes){0};
+    status = check_meshes(import, error);
     if (status) return status;
     prom_import_doing(import, "splitting its polygons into triangles");
-    import->scene = aiApplyPostProcessing(import->scene,
-                                          aiProcess_Triangulate | aiProcess_TransformUVCoords);
+    import->scene =
+        aiApplyPostProcessing(import->scene, aiProcess_Triangulate | aiProcess_GenUVCoords |
+                                                 aiProcess_TransformUVCoords);
     if (!import->scene) return damaged(import, aiGetErrorString(), error);
     return check_meshes(import, error);
 }
@@ -116,7 +136,7 @@ static void matrix_from(const struct aiMatrix4x4 *m, double out[16])
     memcpy(out, rows, sizeof rows);
 }
 
-static void multiply(const double a[16], const double b[16], double out[16])
+void prom_import_multiply(const double a[16], const double b[16], double out[16])
 {
     for (int c = 0; c < 4; c++)
         for (int r = 0; r < 4; r++) {
@@ -138,20 +158,37 @@ typedef struct pending {
     uint32_t parent;
 } pending;
 
+// What the file calls a node. Those of glTF may carry a number in its place.
+static const char *node_name(prom_import *import, const struct aiNode *node)
+{
+    static const char prefix[] = PROM_GLTF_NODE;
+    const prom_gltf *gltf = &import->gltf_file;
+    if (!gltf->numbered) return node->mName.data;
+    bool marked = !strncmp(node->mName.data, prefix, sizeof prefix - 1);
+    unsigned long number =
+        marked ? strtoul(node->mName.data + sizeof prefix - 1, NULL, 10) : ULONG_MAX;
+    bool known = number < gltf->names.count;
+    prom_array_push(&import->node_numbers, known ? (uint32_t)number : PROM_NONE);
+    return known ? gltf->names.data[number] : node->mName.data;
+}
+
 // Appends one node; mesh_refs hold the scene's own mesh numbers for now.
 static prom_status add_node(prom_import *import, pending at, prom_error *error)
 {
     prom_source *source = import->source;
     const struct aiNode *node = at.node;
     prom_source_node out = {.parent = at.parent,
-                            .name = prom_arena_strdup(&source->strings, node->mName.data),
+                            .name =
+                                prom_arena_strdup(&source->strings, node_name(import, node)),
+                            .until = INFINITY,
                             .first_mesh = (uint32_t)source->mesh_refs.count,
                             .mesh_count = node->mNumMeshes};
     matrix_from(&node->mTransformation, out.local);
+    if (at.parent == PROM_NONE) prom_import_axes_apply(import, out.local);
     if (at.parent == PROM_NONE)
         memcpy(out.world, out.local, sizeof out.world);
     else
-        multiply(source->nodes.data[at.parent].world, out.local, out.world);
+        prom_import_multiply(source->nodes.data[at.parent].world, out.local, out.world);
     if (!finite_matrix(out.local) || !finite_matrix(out.world))
         return prom_fail(error, PROM_ERR_INPUT,
                          "%s: the transform of node '%s' is not finite; the file is damaged",
@@ -255,6 +292,7 @@ static void read_content(prom_import *import)
     prom_import_materials(import, uses, map);
     read_meshes(import, placed, map, mesh_map);
     renumber(source, mesh_map);
+    prom_import_levels_attach(import);
     prom_free(placed);
     prom_free(uses);
     prom_free(map);

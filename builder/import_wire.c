@@ -5,8 +5,9 @@
 #include <assert.h>
 
 // The stream: magic, status, error text, warnings; after an error nothing more. Then counts and
-// rows of images, materials, meshes, mesh references and nodes, and the magic again. Texts are
-// a length and bytes. Written and read by one program in one run: native byte order.
+// rows of images, materials, meshes, mesh references and nodes with their levels, and the magic
+// again. Texts are a length and bytes. Written and read by one program in one run: native byte
+// order.
 
 #define MAGIC 0x31504d4950524f4dull
 #define TEXT_LIMIT 4096u
@@ -67,8 +68,15 @@ static void put_source(FILE *file, const prom_source *s)
         put_text(file, node->name);
         put64(file, node->parent);
         put64(file, node->mesh_count);
+        put64(file, node->level_count);
+        put(file, &node->until, sizeof node->until);
         put(file, node->local, sizeof node->local);
         put(file, node->world, sizeof node->world);
+        for (uint32_t k = 0; k < node->level_count; k++) {
+            const prom_source_level *level = &s->levels.data[node->first_level + k];
+            put64(file, level->mesh_count);
+            put(file, &level->until, sizeof level->until);
+        }
     }
 }
 
@@ -241,23 +249,46 @@ static void get_refs(reader *r, prom_source *s)
         if (!expect(r, refs[i] < s->meshes.count, "a mesh reference is out of range")) return;
 }
 
+// The levels of a node; their references follow its own, from *ref on.
+static void get_levels(reader *r, prom_source *s, prom_source_node *node, uint64_t count,
+                       uint32_t *ref)
+{
+    float before = node->until;
+    node->first_level = (uint32_t)s->levels.count;
+    for (uint64_t k = 0; k < count && !r->wrong; k++) {
+        prom_source_level level = {.first_mesh = *ref};
+        uint64_t meshes = get64(r);
+        get(r, &level.until, sizeof level.until);
+        bool good =
+            meshes && meshes <= s->mesh_refs.count - *ref && level.until >= before; // no NaN
+        if (!expect(r, good, "a level of detail is out of range")) return;
+        level.mesh_count = (uint32_t)meshes;
+        *ref += level.mesh_count;
+        before = level.until;
+        prom_array_push(&s->levels, level);
+        node->level_count++;
+    }
+}
+
 static void get_nodes(reader *r, prom_source *s)
 {
-    uint32_t count = get_count(r, 24 + 2 * sizeof(double[16]), "the count of nodes is wrong");
+    uint32_t count = get_count(r, 36 + 2 * sizeof(double[16]), "the count of nodes is wrong");
     uint32_t ref = 0;
     for (uint32_t i = 0; i < count && !r->wrong; i++) {
         prom_source_node node = {.name = get_text(r, &s->strings), .first_mesh = ref};
-        uint64_t parent = get64(r), meshes = get64(r);
+        uint64_t parent = get64(r), meshes = get64(r), levels = get64(r);
+        get(r, &node.until, sizeof node.until);
         get(r, node.local, sizeof node.local);
         get(r, node.world, sizeof node.world);
         bool good = i ? parent < i : parent == PROM_NONE;
-        good = good && meshes <= s->mesh_refs.count - ref;
+        good = good && meshes <= s->mesh_refs.count - ref && node.until > 0;
         for (int k = 0; k < 16; k++)
             good = good && isfinite(node.local[k]) && isfinite(node.world[k]);
         if (!expect(r, good, "a node is out of range")) return;
         node.parent = (uint32_t)parent;
         node.mesh_count = (uint32_t)meshes;
         ref += node.mesh_count;
+        get_levels(r, s, &node, levels, &ref);
         prom_array_push(&s->nodes, node);
     }
     expect(r, ref == s->mesh_refs.count, "the nodes do not use all mesh references");
@@ -289,10 +320,16 @@ static uint64_t hash_content(const prom_source *s)
     h = prom_hash(s->mesh_refs.data, s->mesh_refs.count * sizeof *s->mesh_refs.data, h);
     for (size_t i = 0; i < s->nodes.count; i++) {
         const prom_source_node *node = &s->nodes.data[i];
-        uint32_t row[3] = {node->parent, node->first_mesh, node->mesh_count};
+        uint32_t row[4] = {node->parent, node->first_mesh, node->mesh_count, node->level_count};
         h = prom_hash(node->name, strlen(node->name), h);
         h = prom_hash(row, sizeof row, h);
         h = prom_hash(node->local, sizeof node->local, h);
+        if (node->level_count) h = prom_hash(&node->until, sizeof node->until, h);
+    }
+    for (size_t i = 0; i < s->levels.count; i++) {
+        const prom_source_level *level = &s->levels.data[i];
+        h = prom_hash(&level->mesh_count, sizeof level->mesh_count, h);
+        h = prom_hash(&level->until, sizeof level->until, h);
     }
     return h;
 }

@@ -77,6 +77,7 @@ static void finish_finder(prom_finder *finder)
     prom_array_finish(&finder->scopes);
     prom_array_finish(&finder->parts);
     prom_array_finish(&finder->part_meshes);
+    prom_array_finish(&finder->part_levels);
     prom_array_finish(&finder->uses);
     prom_array_finish(&finder->faces);
     prom_array_finish(&finder->items);
@@ -141,8 +142,13 @@ done:
 
 void prom_objects_finish(prom_objects *objects)
 {
-    for (size_t i = 0; i < objects->shapes.count; i++)
-        prom_mesh_finish(&objects->shapes.data[i].mesh);
+    for (size_t i = 0; i < objects->shapes.count; i++) {
+        prom_shape *shape = &objects->shapes.data[i];
+        prom_mesh_finish(&shape->mesh);
+        for (uint32_t k = 0; k < shape->level_count; k++)
+            prom_mesh_finish(&shape->levels[k].mesh);
+        prom_free(shape->levels);
+    }
     prom_array_finish(&objects->shapes);
     prom_array_finish(&objects->objects);
     prom_array_finish(&objects->groups);

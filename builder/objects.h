@@ -24,7 +24,7 @@ typedef struct prom_shape {
     prom_mesh mesh; // submeshes by material
     prom_layer layer;
     bool lock_border; // its open border meets a neighbour's: no level may move it
-    prom_box bounds;
+    prom_box bounds;  // of the mesh and of the artist's levels
     uint32_t instances;
     prom_shape_level *levels; // by the artist, from fine to coarse, below `mesh`; or NULL
     uint32_t level_count;
@@ -72,12 +72,14 @@ typedef struct prom_objects {
 } prom_objects;
 
 // Steps: flatten the hierarchy; instances share a shape and are never cut or gathered (a
-// non-uniform scale beyond 1.05 makes a shape of its own); blended submeshes become objects of
-// their own; the others are looked at in connected pieces. Against the layout (where the better
-// part of the objects is) and the median object, pieces far beyond it are backdrops, large ones
-// surfaces, which become locked chunks. A part of more than max_triangles, or one that sprawls
-// over the scene, is split into its pieces; of these, the large ones are halved in space and
-// the tiny ones gathered with their neighbours, across source nodes.
+// non-uniform scale beyond 1.05 makes a shape of its own); neither are nodes with levels by the
+// artist, which share a shape when meshes, levels and distances are equal; blended submeshes
+// become objects of their own; the others are looked at in connected pieces. Against the layout
+// (where the better part of the objects is) and the median object, pieces far beyond it are
+// backdrops, large ones surfaces, which become locked chunks. A part of more than
+// max_triangles, or one that sprawls over the scene, is split into its pieces; of these, the
+// large ones are halved in space and the tiny ones gathered with their neighbours, across
+// source nodes.
 //
 // What is connected, or a scene of few triangles in few parts (a chair), stays whole up to 16
 // times max_triangles; a lone model beyond that is cut into chunks like a surface. A repeated

@@ -1,9 +1,9 @@
 // Repeated assemblies: equal subtrees of the source's hierarchy.
 //
-// Two subtrees are equal when their nodes name the same meshes, the matrices below their heads
-// are equal to the bit, and the heads themselves are turned and scaled alike in the world; only
-// where the heads stand may differ. Larger subtrees are taken before smaller ones, so that a
-// repeated house inside a repeated street is no group of its own.
+// Two subtrees are equal when their nodes name the same meshes and levels, the matrices below
+// their heads are equal to the bit, and the heads themselves are turned and scaled alike in the
+// world; only where the heads stand may differ. Larger subtrees are taken before smaller ones,
+// so that a repeated house inside a repeated street is no group of its own.
 #include "builder/objects_private.h"
 #include "metaobj/base/alloc.h"
 #include "metaobj/base/hash.h"
@@ -35,6 +35,12 @@ static bool matrix_finite(const double m[16])
     return true;
 }
 
+static uint64_t hash_meshes(const prom_source *source, uint32_t first, uint32_t count,
+                            uint64_t h)
+{
+    return prom_hash(source->mesh_refs.data + first, count * sizeof(uint32_t), h);
+}
+
 // Hashes from the leaves up, children after their parent in the array of nodes.
 static void hash_subtrees(const prom_source *source, subtree *trees)
 {
@@ -45,8 +51,13 @@ static void hash_subtrees(const prom_source *source, subtree *trees)
         t->nodes++;
         if (n->mesh_count) {
             t->objects++;
-            t->hash = prom_hash(source->mesh_refs.data + n->first_mesh,
-                                n->mesh_count * sizeof(uint32_t), t->hash);
+            t->hash = hash_meshes(source, n->first_mesh, n->mesh_count, t->hash);
+        }
+        for (uint32_t k = 0; k < n->level_count; k++) {
+            const prom_source_level *l = &source->levels.data[n->first_level + k];
+            const float until[2] = {n->until, l->until};
+            t->hash = prom_hash(until, sizeof until, t->hash);
+            t->hash = hash_meshes(source, l->first_mesh, l->mesh_count, t->hash);
         }
         if (n->parent == PROM_NONE) continue;
         subtree *up = &trees[n->parent];

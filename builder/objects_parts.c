@@ -83,6 +83,37 @@ static bool matrix_finite(const double m[16])
     return true;
 }
 
+// Appends the opaque or the blended ones of some meshes; how many.
+static uint32_t take_meshes(prom_finder *finder, uint32_t first, uint32_t count, bool blended)
+{
+    const prom_source *source = finder->source;
+    size_t before = finder->part_meshes.count;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t mesh = source->mesh_refs.data[first + i];
+        if (source->meshes.data[mesh].index_count && is_blended(source, mesh) == blended)
+            prom_array_push(&finder->part_meshes, mesh);
+    }
+    return (uint32_t)(finder->part_meshes.count - before);
+}
+
+// The artist's levels, as far as they have meshes of this kind: a pane that is gone from the
+// second level on keeps its own geometry.
+static void take_levels(prom_finder *finder, const prom_source_node *node, prom_part *part)
+{
+    part->first_level = (uint32_t)finder->part_levels.count;
+    part->until = node->until;
+    for (uint32_t i = 0; i < node->level_count; i++) {
+        const prom_source_level *from = &finder->source->levels.data[node->first_level + i];
+        prom_part_level level = {.first_mesh = (uint32_t)finder->part_meshes.count,
+                                 .until = from->until};
+        level.mesh_count =
+            take_meshes(finder, from->first_mesh, from->mesh_count, part->blended);
+        if (!level.mesh_count) break;
+        prom_array_push(&finder->part_levels, level);
+        part->level_count++;
+    }
+}
+
 // The node's opaque or blended meshes; false if it has none with an extent. *lost is set when
 // meshes were there and had none.
 static bool make_part(prom_finder *finder, uint32_t node, bool blended,
@@ -97,21 +128,19 @@ static bool make_part(prom_finder *finder, uint32_t node, bool blended,
                         .bounds = PROM_WBOX_EMPTY};
     prom_placement whole = prom_placement_from_matrix(n->world);
     uint64_t triangles = 0;
-    for (uint32_t i = 0; i < n->mesh_count; i++) {
-        uint32_t mesh = source->mesh_refs.data[n->first_mesh + i];
-        const prom_mesh *m = &source->meshes.data[mesh];
-        if (!m->index_count || is_blended(source, mesh) != blended) continue;
-        prom_array_push(&finder->part_meshes, mesh);
-        triangles += m->index_count / 3;
+    part->mesh_count = take_meshes(finder, n->first_mesh, n->mesh_count, blended);
+    if (!part->mesh_count) return false;
+    for (uint32_t i = 0; i < part->mesh_count; i++) {
+        uint32_t mesh = finder->part_meshes.data[part->first_mesh + i];
+        triangles += source->meshes.data[mesh].index_count / 3;
         prom_wbox b = prom_wbox_of_placed(&mesh_bounds[mesh], &whole);
         prom_wbox_add(&part->bounds, &b);
     }
-    part->mesh_count = (uint32_t)finder->part_meshes.count - part->first_mesh;
-    if (!part->mesh_count) return false;
     double diagonal = prom_wbox_diagonal(&part->bounds);
     if (diagonal > 0 && isfinite(diagonal) && triangles <= UINT32_MAX / 3 &&
         set_placement(part, n->world)) {
         part->triangles = (uint32_t)triangles;
+        take_levels(finder, n, part);
         return true;
     }
     *lost = true;
@@ -162,17 +191,42 @@ static int by_scope(const void *pa, const void *pb)
 }
 
 typedef struct kind_key {
-    const uint32_t *meshes;
+    const prom_finder *finder;
     const prom_part *part;
     uint32_t index;
 } kind_key;
 
+static int compare_meshes(const prom_finder *f, uint32_t a, uint32_t a_count, uint32_t b,
+                          uint32_t b_count)
+{
+    const uint32_t *meshes = f->part_meshes.data;
+    if (a_count != b_count) return a_count < b_count ? -1 : 1;
+    for (uint32_t i = 0; i < a_count; i++)
+        if (meshes[a + i] != meshes[b + i]) return meshes[a + i] < meshes[b + i] ? -1 : 1;
+    return 0;
+}
+
+static int compare_levels(const prom_finder *f, const prom_part *a, const prom_part *b)
+{
+    if (a->level_count != b->level_count) return a->level_count < b->level_count ? -1 : 1;
+    if (a->level_count && a->until != b->until) return a->until < b->until ? -1 : 1;
+    for (uint32_t i = 0; i < a->level_count; i++) {
+        const prom_part_level *p = &f->part_levels.data[a->first_level + i];
+        const prom_part_level *q = &f->part_levels.data[b->first_level + i];
+        if (p->until != q->until) return p->until < q->until ? -1 : 1;
+        int c = compare_meshes(f, p->first_mesh, p->mesh_count, q->first_mesh, q->mesh_count);
+        if (c) return c;
+    }
+    return 0;
+}
+
 static int compare_shapes(const kind_key *a, const kind_key *b)
 {
-    if (a->part->mesh_count != b->part->mesh_count)
-        return a->part->mesh_count < b->part->mesh_count ? -1 : 1;
-    for (uint32_t i = 0; i < a->part->mesh_count; i++)
-        if (a->meshes[i] != b->meshes[i]) return a->meshes[i] < b->meshes[i] ? -1 : 1;
+    const prom_finder *f = a->finder;
+    int c = compare_meshes(f, a->part->first_mesh, a->part->mesh_count, b->part->first_mesh,
+                           b->part->mesh_count);
+    if (!c) c = compare_levels(f, a->part, b->part);
+    if (c) return c;
     for (int k = 0; k < 3; k++)
         if (a->part->stretch[k] != b->part->stretch[k])
             return a->part->stretch[k] < b->part->stretch[k] ? -1 : 1;
@@ -191,10 +245,7 @@ static void number_kinds(prom_finder *finder)
 {
     size_t n = finder->parts.count;
     kind_key *keys = prom_alloc(n, sizeof *keys);
-    for (uint32_t i = 0; i < n; i++) {
-        const prom_part *p = &finder->parts.data[i];
-        keys[i] = (kind_key){finder->part_meshes.data + p->first_mesh, p, i};
-    }
+    for (uint32_t i = 0; i < n; i++) keys[i] = (kind_key){finder, &finder->parts.data[i], i};
     qsort(keys, n, sizeof *keys, by_shape);
     uint32_t kind = 0;
     for (size_t i = 0; i < n; i++) {
@@ -206,7 +257,8 @@ static void number_kinds(prom_finder *finder)
         prom_part *p = &finder->parts.data[keys[i].index];
         const prom_part *before = i ? keys[i - 1].part : NULL;
         const prom_part *after = i + 1 < n ? keys[i + 1].part : NULL;
-        p->unique = !(before && before->kind == p->kind && before->scope == p->scope) &&
+        p->unique = !p->level_count &&
+                    !(before && before->kind == p->kind && before->scope == p->scope) &&
                     !(after && after->kind == p->kind && after->scope == p->scope);
     }
     prom_free(keys);

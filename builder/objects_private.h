@@ -2,7 +2,8 @@
 //
 //   groups     which nodes head repeated assemblies; what is left is the outer scope
 //   parts      a node's opaque meshes are one part, its blended ones another
-//   items      the connected pieces of every part that is not an instance
+//   items      the connected pieces of every part that is no instance and has no levels by the
+//              artist
 //   layout     how large the scene is without its backdrop
 //   fates      what becomes of every item: kept, cut, gathered, set apart
 //   shapes     geometry is copied out
@@ -23,13 +24,20 @@
 // parts stay whole.
 enum { PROM_ALONE_FACTOR = 16, PROM_FEW_PARTS = 64 };
 
+typedef struct prom_part_level {
+    uint32_t first_mesh, mesh_count; // range in part_meshes
+    float until;
+} prom_part_level;
+
 typedef struct prom_part {
     uint32_t node, scope;
-    uint32_t first_mesh, mesh_count; // range in part_meshes
+    uint32_t first_mesh, mesh_count;   // range in part_meshes
+    uint32_t first_level, level_count; // range in part_levels: the artist's
+    float until;                       // of the meshes, where there are levels
     uint32_t triangles;
     uint32_t kind; // parts of one kind have equal shapes
     bool blended;
-    bool unique;              // the only one of its kind in its scope
+    bool unique;              // the only one of its kind in its scope, and without levels
     int32_t stretch[3];       // logarithms of the stretch to be baked, in steps
     prom_placement placement; // without that stretch
     prom_wbox bounds;
@@ -83,6 +91,7 @@ typedef struct prom_finder {
     PROM_ARRAY(prom_scope) scopes;
     PROM_ARRAY(prom_part) parts;
     PROM_ARRAY(uint32_t) part_meshes;
+    PROM_ARRAY(prom_part_level) part_levels;
     PROM_ARRAY(prom_use) uses;
     PROM_ARRAY(prom_face) faces;
     PROM_ARRAY(prom_item) items;

@@ -167,7 +167,7 @@ void prom_make_shape(prom_finder *finder, prom_span span, prom_layer layer, bool
     for (int k = 0; k < 3; k++) at.origin[k] = snap(at.origin[k], step);
     uint32_t materials = sort_faces(finder, span);
     uint32_t vertices = number_vertices(finder, span);
-    prom_shape shape = {.layer = layer, .lock_border = lock_border};
+    prom_shape shape = {.layer = layer, .lock_border = lock_border, .until = INFINITY};
     prom_mesh_init(&shape.mesh, vertices, (uint32_t)(3 * span.count), materials);
     fill_mesh(finder, span, at.origin, step, &shape.mesh);
     shape.bounds = prom_mesh_bounds(&shape.mesh);
@@ -215,28 +215,53 @@ static void append_mesh(const prom_mesh *in, uint32_t material, const float stre
     *indices += in->index_count;
 }
 
-static void copy_part(const prom_finder *finder, const prom_part *part, prom_mesh *out)
+// `count` of the part's meshes, or of a level's, from `first` on.
+static void copy_meshes(const prom_finder *finder, const prom_part *part, uint32_t first,
+                        uint32_t count, prom_mesh *out)
 {
     const prom_mesh *meshes = finder->source->meshes.data;
-    mesh_key *keys = prom_alloc(part->mesh_count, sizeof *keys);
+    mesh_key *keys = prom_alloc(count, sizeof *keys);
     uint32_t vertices = 0, indices = 0, submeshes = 0;
-    for (uint32_t i = 0; i < part->mesh_count; i++) {
-        uint32_t mesh = finder->part_meshes.data[part->first_mesh + i];
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t mesh = finder->part_meshes.data[first + i];
         keys[i] = (mesh_key){meshes[mesh].submeshes[0].material, mesh, i};
         vertices += meshes[mesh].vertex_count;
         indices += meshes[mesh].index_count;
     }
-    qsort(keys, part->mesh_count, sizeof *keys, by_mesh_material);
-    for (uint32_t i = 0; i < part->mesh_count; i++)
+    qsort(keys, count, sizeof *keys, by_mesh_material);
+    for (uint32_t i = 0; i < count; i++)
         submeshes += !i || keys[i].material != keys[i - 1].material;
     prom_mesh_init(out, vertices, indices, submeshes);
     float stretch[3];
     for (int k = 0; k < 3; k++) stretch[k] = prom_part_stretch(part, k);
     vertices = indices = submeshes = 0;
-    for (uint32_t i = 0; i < part->mesh_count; i++)
+    for (uint32_t i = 0; i < count; i++)
         append_mesh(&meshes[keys[i].mesh], keys[i].material, stretch, out, &vertices, &indices,
                     &submeshes);
     prom_free(keys);
+}
+
+// A billboard in place of a tree may be wider than the tree.
+static void add_bounds(prom_box *box, const prom_mesh *mesh)
+{
+    prom_box more = prom_mesh_bounds(mesh);
+    for (int k = 0; k < 3; k++) {
+        box->min[k] = fminf(box->min[k], more.min[k]);
+        box->max[k] = fmaxf(box->max[k], more.max[k]);
+    }
+}
+
+static void copy_levels(const prom_finder *finder, const prom_part *part, prom_shape *shape)
+{
+    shape->until = part->level_count ? part->until : INFINITY;
+    shape->level_count = part->level_count;
+    if (!part->level_count) return;
+    shape->levels = prom_calloc(part->level_count, sizeof *shape->levels);
+    for (uint32_t i = 0; i < part->level_count; i++) {
+        const prom_part_level *from = &finder->part_levels.data[part->first_level + i];
+        shape->levels[i].until = from->until;
+        copy_meshes(finder, part, from->first_mesh, from->mesh_count, &shape->levels[i].mesh);
+    }
 }
 
 void prom_make_part(prom_finder *finder, const prom_part *part, bool backdrop)
@@ -246,8 +271,10 @@ void prom_make_part(prom_finder *finder, const prom_part *part, bool backdrop)
         prom_shape s = {.layer = backdrop        ? PROM_LAYER_BACKDROP
                                  : part->blended ? PROM_LAYER_BLENDED
                                                  : PROM_LAYER_OBJECT};
-        copy_part(finder, part, &s.mesh);
+        copy_meshes(finder, part, part->first_mesh, part->mesh_count, &s.mesh);
+        copy_levels(finder, part, &s);
         s.bounds = prom_mesh_bounds(&s.mesh);
+        for (uint32_t i = 0; i < s.level_count; i++) add_bounds(&s.bounds, &s.levels[i].mesh);
         *shape = (uint32_t)finder->out->shapes.count;
         prom_array_push(&finder->out->shapes, s);
     }

@@ -6,6 +6,7 @@ void prom_source_finish(prom_source *source)
     for (size_t i = 0; i < source->images.count; i++) prom_free(source->images.data[i].rgba);
     prom_array_finish(&source->nodes);
     prom_array_finish(&source->mesh_refs);
+    prom_array_finish(&source->levels);
     prom_array_finish(&source->meshes);
     prom_array_finish(&source->materials);
     prom_array_finish(&source->images);

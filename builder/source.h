@@ -47,15 +47,24 @@ typedef struct prom_source {
     prom_arena strings;
 } prom_source;
 
+// Which axis of the file points upwards. In a source it is always y.
+typedef enum prom_up_axis {
+    PROM_UP_FROM_FILE = 0, // what it says, or what is usual in its format (3DS: z; else y)
+    PROM_UP_Y = 1,
+    PROM_UP_Z = 2,
+} prom_up_axis;
+
 typedef struct prom_import_options {
     uint32_t max_texture_px; // pictures are reduced to this; 0: 1024
     uint64_t memory_bytes;   // address space of the child; 0: 8 GiB
     uint32_t time_s;         // processor time of the child; 0: 300
+    prom_up_axis up;
+    double unit_m; // metres that a unit of the file stands for; 0: what it says, or 1
 } prom_import_options;
 
-// Reads a scene through assimp in a child process. Missing textures are warnings; a file
-// without triangles, a crash, a hang or a lack of memory in the loader is an error with the
-// file's name.
+// Reads a scene through assimp in a child process, pictures in children of that. Missing or
+// broken textures are warnings; a file without triangles, a crash, a hang or a lack of memory
+// in the loader is an error with the file's name. PROM_ERR_USAGE for a unit that is no length.
 prom_status prom_source_import(const char *path, const prom_import_options *options,
                                prom_source *source, prom_error *error);
 void prom_source_finish(prom_source *source);
