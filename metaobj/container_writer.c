@@ -12,37 +12,51 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static prom_status fail_errno(prom_error *error, const char *what, const char *path)
+// Whether the .part's name still leads to the file that we hold.
+static bool is_ours(const prom_writer *w)
 {
-    return prom_fail(error, PROM_ERR_OUTPUT, "cannot %s %s: %s", what, path, strerror(errno));
+    struct stat held, named;
+    return !fstat(w->lock_fd, &held) && !lstat(w->part_path, &named) &&
+           held.st_ino == named.st_ino && held.st_dev == named.st_dev;
+}
+
+static prom_status try_lock(prom_writer *w, prom_error *error)
+{
+    // A pipe under this name must not make us wait.
+    w->lock_fd =
+        open(w->part_path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+    struct stat info;
+    if (w->lock_fd < 0 || fstat(w->lock_fd, &info))
+        return prom_writer_fail_errno(w, errno, error);
+    if (!S_ISREG(info.st_mode))
+        return prom_fail(error, PROM_ERR_OUTPUT,
+                         "cannot write %s: it is no plain file; remove it", w->part_path);
+    if (flock(w->lock_fd, LOCK_EX | LOCK_NB))
+        return prom_fail(error, PROM_ERR_OUTPUT,
+                         "another build is writing %s; wait for it or choose another output",
+                         w->part_path);
+    return PROM_OK;
+}
+
+static void unlock(prom_writer *w)
+{
+    if (w->lock_fd >= 0) close(w->lock_fd);
+    w->lock_fd = -1;
 }
 
 // Opens and locks the .part. Another build may finish and rename its .part between our open and
 // our lock; then the lock is on a file that has left the name, and we try again.
-static int lock_part(const char *part_path, prom_error *error)
+static prom_status lock_part(prom_writer *w, prom_error *error)
 {
-    for (int attempt = 0; attempt < 100; attempt++) {
-        int fd = open(part_path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-        if (fd < 0) {
-            fail_errno(error, "write", part_path);
-            return -1;
-        }
-        if (flock(fd, LOCK_EX | LOCK_NB)) {
-            close(fd);
-            prom_fail(error, PROM_ERR_OUTPUT,
-                      "another build is writing %s; wait for it or choose another output",
-                      part_path);
-            return -1;
-        }
-        struct stat held, named;
-        if (!fstat(fd, &held) && !stat(part_path, &named) && held.st_ino == named.st_ino &&
-            held.st_dev == named.st_dev)
-            return fd;
-        close(fd);
+    prom_status status = PROM_OK;
+    for (int attempt = 0; attempt < 100 && !status; attempt++) {
+        status = try_lock(w, error);
+        if (!status && is_ours(w)) return PROM_OK;
+        unlock(w);
     }
-    prom_fail(error, PROM_ERR_OUTPUT, "cannot lock %s; is another build writing it?",
-              part_path);
-    return -1;
+    return status ? status
+                  : prom_fail(error, PROM_ERR_OUTPUT,
+                              "cannot lock %s; is another build writing it?", w->part_path);
 }
 
 static void unlink_journal(const char *part_path)
@@ -56,7 +70,7 @@ static prom_status open_database(prom_writer *w, prom_error *error)
 {
     // Only now, under the lock, is a leftover known to belong to nobody.
     unlink_journal(w->part_path);
-    if (ftruncate(w->lock_fd, 0)) return fail_errno(error, "write", w->part_path);
+    if (ftruncate(w->lock_fd, 0)) return prom_writer_fail_errno(w, errno, error);
     char *name = prom_sqlite_path(w->part_path);
     int rc = sqlite3_open_v2(name, &w->db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, NULL);
     prom_free(name);
@@ -83,8 +97,8 @@ prom_writer *prom_writer_create(const char *path, prom_error *error)
     prom_writer *w = prom_calloc(1, sizeof *w);
     w->path = prom_strdup(path);
     w->part_path = prom_format("%s.part", path);
-    w->lock_fd = lock_part(w->part_path, error);
-    if (w->lock_fd < 0 || open_database(w, error)) {
+    w->lock_fd = -1;
+    if (lock_part(w, error) || open_database(w, error)) {
         prom_writer_destroy(w);
         return NULL;
     }
@@ -104,11 +118,11 @@ void prom_writer_destroy(prom_writer *writer)
     if (!writer) return;
     close_database(writer);
     if (writer->lock_fd >= 0) {
-        if (!writer->finished) {
+        if (!writer->finished && is_ours(writer)) {
             unlink(writer->part_path);
             unlink_journal(writer->part_path);
         }
-        close(writer->lock_fd);
+        unlock(writer);
     }
     for (size_t i = 0; i < writer->meta.count; i++) {
         prom_free(writer->meta.data[i].key);
@@ -141,6 +155,7 @@ prom_status prom_writer_set_meta(prom_writer *writer, const char *key, const cha
 prom_status prom_writer_add_stage(prom_writer *writer, const char *name, uint64_t content_hash,
                                   double ms, prom_error *error)
 {
+    if (prom_writer_ready(writer, error)) return PROM_ERR_OUTPUT;
     prom_row_out row = prom_row_begin(writer, PROM_TABLE_STAGE);
     prom_put_text(&row, name);
     prom_put_int(&row, (int64_t)content_hash);
@@ -192,11 +207,21 @@ static void sync_folder(const char *path)
     prom_free(folder);
 }
 
+static prom_status fail_removed(prom_writer *w, prom_error *error)
+{
+    w->broken = true;
+    return prom_fail(error, PROM_ERR_OUTPUT,
+                     "cannot write %s: another program has removed %s meanwhile; build again",
+                     w->path, w->part_path);
+}
+
 prom_status prom_writer_finish(prom_writer *writer, prom_error *error)
 {
-    if (!writer->has_model || writer->broken)
-        return prom_fail(error, PROM_ERR_OUTPUT, "%s: cannot be finished: %s", writer->path,
-                         writer->broken ? "an earlier write failed" : "it holds no model yet");
+    if (prom_writer_ready(writer, error)) return PROM_ERR_OUTPUT;
+    if (!writer->has_model)
+        return prom_fail(error, PROM_ERR_OUTPUT,
+                         "%s: cannot be finished: it holds no model yet", writer->path);
+    if (!is_ours(writer)) return fail_removed(writer, error);
     prom_status status =
         prom_writer_exec(writer, "COMMIT; PRAGMA synchronous=FULL; BEGIN", error);
     if (!status) status = write_meta(writer, error);
@@ -204,9 +229,10 @@ prom_status prom_writer_finish(prom_writer *writer, prom_error *error)
     if (!status) status = prom_writer_exec(writer, "COMMIT", error);
     if (status) return status;
     close_database(writer);
-    if (fsync(writer->lock_fd)) return fail_errno(error, "sync", writer->part_path);
+    if (fsync(writer->lock_fd)) return prom_writer_fail_errno(writer, errno, error);
+    if (!is_ours(writer)) return fail_removed(writer, error);
     if (rename(writer->part_path, writer->path))
-        return fail_errno(error, "rename the finished file to", writer->path);
+        return prom_writer_fail_errno(writer, errno, error);
     writer->finished = true;
     sync_folder(writer->path);
     return PROM_OK;

@@ -43,6 +43,10 @@ void prom_put_blob(prom_row_out *row, const void *data, uint64_t bytes); // kept
 prom_status prom_row_end(prom_row_out *row, prom_error *error);
 
 prom_status prom_writer_exec(prom_writer *writer, const char *sql, prom_error *error);
+// Say what went wrong, SQLite's last error or an errno; nothing is written from then on.
 prom_status prom_writer_fail(prom_writer *writer, prom_error *error);
+prom_status prom_writer_fail_errno(prom_writer *writer, int number, prom_error *error);
+// PROM_OK unless an earlier write failed.
+prom_status prom_writer_ready(prom_writer *writer, prom_error *error);
 
 #endif

@@ -53,6 +53,7 @@ static void note_materials(prom_writer *w, const prom_mesh *mesh)
 prom_status prom_writer_add_mesh(prom_writer *writer, const prom_mesh *mesh, uint32_t *id,
                                  prom_error *error)
 {
+    if (prom_writer_ready(writer, error)) return PROM_ERR_OUTPUT;
     if (writer->has_model) return refuse_late(writer, "mesh", error);
     const char *wrong = prom_mesh_check(mesh, PROM_NONE);
     if (wrong)
@@ -83,6 +84,7 @@ prom_status prom_writer_add_mesh(prom_writer *writer, const prom_mesh *mesh, uin
 prom_status prom_writer_add_texture(prom_writer *writer, const prom_texture *texture,
                                     uint32_t *id, prom_error *error)
 {
+    if (prom_writer_ready(writer, error)) return PROM_ERR_OUTPUT;
     if (writer->has_model) return refuse_late(writer, "texture", error);
     size_t bytes = prom_texture_bytes(texture);
     if (!bytes)

@@ -124,6 +124,7 @@ prom_status prom_writer_put_model(prom_writer *writer, const prom_model *model,
                                   prom_error *error)
 {
     uint64_t row = 0;
+    if (prom_writer_ready(writer, error)) return PROM_ERR_OUTPUT;
     const char *wrong = prom_model_check(model, &row);
     if (wrong)
         return prom_fail(error, PROM_ERR_OUTPUT,

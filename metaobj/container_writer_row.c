@@ -1,18 +1,68 @@
 // Rows of the container, written through one prepared statement per table.
 #include "metaobj/container_writer.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 
-prom_status prom_writer_fail(prom_writer *writer, prom_error *error)
+prom_status prom_writer_fail_errno(prom_writer *writer, int number, prom_error *error)
 {
+    const char *advice = "";
     writer->broken = true;
-    if ((sqlite3_errcode(writer->db) & 0xff) == SQLITE_FULL)
+    if (number == ENOSPC)
         return prom_fail(error, PROM_ERR_OUTPUT,
                          "cannot write %s: the disk is full; free some space and build again",
                          writer->part_path);
-    return prom_fail(error, PROM_ERR_OUTPUT, "cannot write %s: %s", writer->part_path,
-                     sqlite3_errmsg(writer->db));
+    if (number == EDQUOT) advice = "; free some space and build again";
+    if (number == ELOOP) advice = " (it is a symbolic link; remove it)";
+    return prom_fail(error, PROM_ERR_OUTPUT, "cannot write %s: %s%s", writer->part_path,
+                     strerror(number), advice);
+}
+
+// SQLite's own texts speak of databases and statements, of which the user knows nothing.
+static const char *why_sqlite_failed(int rc)
+{
+    if (rc == SQLITE_READONLY_DBMOVED) return "another program has removed or renamed it";
+    switch (rc & 0xff) {
+    case SQLITE_IOERR:
+        return "the disk reports an error";
+    case SQLITE_CANTOPEN:
+        return "its journal cannot be made; is the folder writable?";
+    case SQLITE_PERM:
+    case SQLITE_READONLY:
+        return "it may not be written";
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+        return "another program has it open";
+    case SQLITE_CORRUPT:
+    case SQLITE_NOTADB:
+        return "another program has changed it";
+    case SQLITE_NOMEM:
+        return "there is not enough memory";
+    case SQLITE_TOOBIG:
+        return "a row is larger than the format allows";
+    default:
+        return "an unexpected error";
+    }
+}
+
+prom_status prom_writer_fail(prom_writer *writer, prom_error *error)
+{
+    int rc = sqlite3_extended_errcode(writer->db), number = 0;
+    if ((rc & 0xff) == SQLITE_FULL) return prom_writer_fail_errno(writer, ENOSPC, error);
+    if ((rc & 0xff) == SQLITE_IOERR || (rc & 0xff) == SQLITE_CANTOPEN)
+        number = sqlite3_system_errno(writer->db);
+    if (number) return prom_writer_fail_errno(writer, number, error);
+    writer->broken = true;
+    return prom_fail(error, PROM_ERR_OUTPUT, "cannot write %s: %s (%d)", writer->part_path,
+                     why_sqlite_failed(rc), rc);
+}
+
+prom_status prom_writer_ready(prom_writer *writer, prom_error *error)
+{
+    if (!writer->broken) return PROM_OK;
+    return prom_fail(error, PROM_ERR_OUTPUT, "cannot write %s: an earlier write failed",
+                     writer->part_path);
 }
 
 prom_status prom_writer_exec(prom_writer *writer, const char *sql, prom_error *error)
