@@ -23,6 +23,8 @@ void prom_import_axes_prepare(const prom_import *import, struct aiPropertyStore 
     // One node for each of the file's, rather than one for each pivot.
     aiSetImportPropertyInteger(settings, AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, 0);
     aiSetImportPropertyInteger(settings, AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, 0);
+    // Triangles that show the bones of a file without any are none of its own.
+    aiSetImportPropertyInteger(settings, AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
     if (import->options.up != PROM_UP_FROM_FILE)
         aiSetImportPropertyInteger(settings, AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, 1);
 }
@@ -82,6 +84,10 @@ void prom_import_axes_apply(prom_import *import, double root[16])
     double own[16], unit = 1;
     if (fbx) unit = 0.01 * number(scene, "UnitScaleFactor", 100);
     if (o->unit_m > 0) unit = o->unit_m;
+    if (o->unit_m > 0 && ends_in(import->path, ".dae")) {
+        double had = sqrt(root[0] * root[0] + root[1] * root[1] + root[2] * root[2]);
+        if (had > 0) unit /= had; // the file's own unit, which the loader has put there
+    }
     if (!(unit > 1e-9) || !(unit < 1e9)) unit = 1;
     if (o->up == PROM_UP_FROM_FILE) {
         if (fbx && fbx_axes(scene, own)) turn(root, own);

@@ -1,7 +1,6 @@
 #include "builder/file_io.h"
 #include "builder/image_io.h"
 #include "builder/import_parts.h"
-#include "metaobj/base/threads.h"
 
 #include <stdlib.h>
 
@@ -121,46 +120,36 @@ static char *complaint(const prom_import_picture *picture, const prom_error *err
     return prom_format("%s (material '%s'); %s", error->text, picture->material, instead);
 }
 
-static void decode(prom_import *import, prom_import_picture *picture)
+static void take(prom_import_picture *picture, const pixels *color)
+{
+    picture->width = color->width;
+    picture->height = color->height;
+    picture->rgba = color->rgba;
+    picture->min_alpha = min_alpha(color);
+}
+
+void prom_import_picture_lost(prom_import_picture *picture, const prom_error *error)
+{
+    pixels grey = plain(1, 1, NEUTRAL);
+    picture->warning = complaint(picture, error, "a neutral grey stands in");
+    picture->missing = true;
+    take(picture, &grey);
+}
+
+void prom_import_picture_decode(const prom_import *import, prom_import_picture *picture)
 {
     prom_error error;
     pixels color = {0}, mask = {0};
     if (picture->color && read_picture(import, picture->color, &color, &error)) {
-        picture->warning = complaint(picture, &error, "a neutral grey stands in");
-        picture->missing = true;
-        color = plain(1, 1, NEUTRAL);
+        prom_import_picture_lost(picture, &error);
+        return;
     }
-    if (!picture->missing && picture->mask) {
+    if (picture->mask) {
         bool good = !read_picture(import, picture->mask, &mask, &error);
         if (!good) picture->warning = complaint(picture, &error, "it stays opaque");
         if (!color.rgba) color = good ? plain(mask.width, mask.height, 255) : plain(1, 1, 255);
         if (good) merge_mask(&color, &mask);
         prom_free(mask.rgba);
     }
-    picture->width = color.width;
-    picture->height = color.height;
-    picture->rgba = color.rgba;
-    picture->min_alpha = min_alpha(&color);
-}
-
-typedef struct decode_job {
-    prom_import *import;
-    prom_import_picture *pictures;
-} decode_job;
-
-static void decode_body(void *user, size_t i, unsigned thread)
-{
-    (void)thread;
-    decode_job *job = user;
-    prom_import_picture *p = &job->pictures[i];
-    prom_import_doing(job->import, "decoding %s", p->color ? p->color : p->mask);
-    decode(job->import, p);
-}
-
-void prom_import_pictures(prom_import *import, prom_import_picture *pictures, size_t count)
-{
-    decode_job job = {import, pictures};
-    prom_parallel_for(count, decode_body, &job);
-    for (size_t i = 0; i < count; i++)
-        if (pictures[i].warning) prom_import_warn(import, "%s", pictures[i].warning);
+    take(picture, &color);
 }

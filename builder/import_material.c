@@ -81,6 +81,26 @@ static bool get_color(const struct aiMaterial *material, const char *key, unsign
     return true;
 }
 
+// The light that a material gives off, linear; 0 where it is not of the picture that colours
+// it. There is no emission here, only colour under a light that is much the same everywhere, so
+// what glows becomes brighter, up to white, and takes its colours from the material's own
+// picture.
+static void get_emission(prom_import *import, const struct aiMaterial *material,
+                         const char *color, float out[3])
+{
+    float glow[4] = {0}, strength = 1;
+    const char *own = texture_name(import, material, aiTextureType_EMISSIVE, NULL);
+    memset(out, 0, 3 * sizeof *out);
+    if (own && !same_name(own, color)) return;
+    if (!get_color(material, AI_MATKEY_COLOR_EMISSIVE, glow)) return;
+    if (aiGetMaterialFloatArray(material, AI_MATKEY_EMISSIVE_INTENSITY, &strength, NULL) !=
+            aiReturn_SUCCESS ||
+        !(strength >= 0))
+        strength = 1;
+    for (int k = 0; k < 3; k++)
+        out[k] = unit((import->gltf ? glow[k] : prom_srgb_to_linear(glow[k])) * strength);
+}
+
 static void draft_gltf(const struct aiMaterial *material, draft *d)
 {
     float color[4] = {1, 1, 1, 1}, cutoff;
@@ -117,6 +137,14 @@ static void draft_other(const struct aiMaterial *material, const prom_import_use
     if (d->opacity <= 0) d->opacity = 1;
 }
 
+static bool is_black(const struct aiMaterial *material, bool gltf)
+{
+    float color[4] = {1, 1, 1, 1};
+    if (!gltf || !get_color(material, AI_MATKEY_BASE_COLOR, color))
+        get_color(material, AI_MATKEY_COLOR_DIFFUSE, color);
+    return color[0] + color[1] + color[2] <= 0;
+}
+
 static draft make_draft(prom_import *import, const struct aiMaterial *material,
                         const prom_import_use *use, picture_list *pictures)
 {
@@ -131,6 +159,8 @@ static draft make_draft(prom_import *import, const struct aiMaterial *material,
         name = keep_string(import, &given);
     const char *color = texture_name(import, material, order[import->gltf][0], &d.uv_channel);
     if (!color) color = texture_name(import, material, order[import->gltf][1], &d.uv_channel);
+    if (!color && is_black(material, import->gltf)) // a screen, a lamp
+        color = texture_name(import, material, aiTextureType_EMISSIVE, &d.uv_channel);
     const char *mask = NULL;
     if (!import->gltf)
         mask =
@@ -140,6 +170,11 @@ static draft make_draft(prom_import *import, const struct aiMaterial *material,
         draft_gltf(material, &d);
     else
         draft_other(material, use, &d);
+    // In other formats the emission of what has a colour is too often an exporter's whim.
+    float glow[3];
+    get_emission(import, material, color, glow);
+    if (import->gltf || is_black(material, false))
+        for (int k = 0; k < 3; k++) d.color[k] = fminf(d.color[k] + glow[k], 1);
     int two_sided = 0;
     unsigned one = 1;
     d.two_sided = aiGetMaterialIntegerArray(material, AI_MATKEY_TWOSIDED, &two_sided, &one) ==

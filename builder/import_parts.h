@@ -105,8 +105,16 @@ typedef struct prom_import_picture {
     char *warning; // NULL: all is well
 } prom_import_picture;
 
-// Decodes all of them, on all cores. A missing or broken one becomes one neutral grey texel.
+// Decodes one, in this process. A missing or broken one becomes one neutral grey texel.
+void prom_import_picture_decode(const prom_import *import, prom_import_picture *picture);
+void prom_import_picture_lost(prom_import_picture *picture, const prom_error *error);
+
+// import_workers.c: decodes all of them, in as many processes as there are cores. A crash or a
+// hang of a decoder loses one picture.
 void prom_import_pictures(prom_import *import, prom_import_picture *pictures, size_t count);
+
+// Called before a picture is decoded, for tests that simulate a crash or a hang. NULL.
+extern void (*prom_import_picture_hook)(const char *name);
 
 // import_wire.c: the result of the child as bytes. Pack ends with false when the file cannot
 // take them. Unpack trusts nothing: every count, index and number is checked.
