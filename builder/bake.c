@@ -1,31 +1,25 @@
 #include "builder/bake.h"
 
 #include "metaobj/base/alloc.h"
-#include "metaobj/base/threads.h"
 
-#define ATLAS_PX (PROM_VIEW_PX * PROM_DIR_GRID)
 _Static_assert(PROM_DIR_GRID == 6, "the six faces use the first row of the atlas");
 
 struct prom_baker {
     prom_target *target;
     prom_draw_list *list;
-    uint8_t *rgba; // read-back of the atlas
-    uint32_t *ids;
 };
 
 static const uint8_t nothing[4] = {0, 0, 0, 0};
 
 void prom_views_init(prom_views *views, bool with_ids)
 {
-    views->luminance = prom_alloc(PROM_DIRS, sizeof *views->luminance);
-    views->coverage = prom_alloc(PROM_DIRS, sizeof *views->coverage);
-    views->ids = with_ids ? prom_alloc(PROM_DIRS, sizeof *views->ids) : NULL;
+    views->rgba = prom_alloc(PROM_ATLAS_PIXELS, sizeof *views->rgba);
+    views->ids = with_ids ? prom_alloc(PROM_ATLAS_PIXELS, sizeof *views->ids) : NULL;
 }
 
 void prom_views_finish(prom_views *views)
 {
-    prom_free(views->luminance);
-    prom_free(views->coverage);
+    prom_free(views->rgba);
     prom_free(views->ids);
     *views = (prom_views){0};
 }
@@ -33,14 +27,12 @@ void prom_views_finish(prom_views *views)
 prom_baker *prom_baker_create(prom_renderer *renderer, prom_error *error)
 {
     prom_baker *baker = prom_calloc(1, sizeof *baker);
-    baker->target = prom_target_create(ATLAS_PX, ATLAS_PX, true, error);
+    baker->target = prom_target_create(PROM_ATLAS_PX, PROM_ATLAS_PX, true, error);
     if (!baker->target) {
         prom_baker_destroy(baker);
         return NULL;
     }
     baker->list = prom_draw_list_create(renderer);
-    baker->rgba = prom_alloc((size_t)ATLAS_PX * ATLAS_PX, 4);
-    baker->ids = prom_alloc((size_t)ATLAS_PX * ATLAS_PX, sizeof *baker->ids);
     return baker;
 }
 
@@ -49,8 +41,6 @@ void prom_baker_destroy(prom_baker *baker)
     if (!baker) return;
     prom_target_destroy(baker->target);
     prom_draw_list_destroy(baker->list);
-    prom_free(baker->rgba);
-    prom_free(baker->ids);
     prom_free(baker);
 }
 
@@ -83,36 +73,6 @@ static void frame_of_direction(const float out[3], float right[3], float up[3])
     glm_vec3_cross((float *)out, right, up);
 }
 
-typedef struct unpack_job {
-    const prom_baker *baker;
-    prom_views *views;
-} unpack_job;
-
-// Copies one view out of the atlas.
-static void unpack_view(void *user, size_t dir, unsigned thread)
-{
-    (void)thread;
-    const unpack_job *job = user;
-    uint32_t x0 = (uint32_t)dir % PROM_DIR_GRID * PROM_VIEW_PX;
-    uint32_t y0 = (uint32_t)dir / PROM_DIR_GRID * PROM_VIEW_PX;
-    float *luminance = job->views->luminance[dir], *coverage = job->views->coverage[dir];
-    for (uint32_t y = 0; y < PROM_VIEW_PX; y++) {
-        size_t from = (size_t)(y0 + y) * ATLAS_PX + x0, to = (size_t)y * PROM_VIEW_PX;
-        const uint8_t *p = job->baker->rgba + 4 * from;
-        for (uint32_t x = 0; x < PROM_VIEW_PX; x++, p += 4) {
-            bool covered = p[3] >= 128;
-            coverage[to + x] = covered ? 1.0f : 0.0f;
-            luminance[to + x] = covered ? 0.2126f * prom_srgb8_to_linear(p[0]) +
-                                              0.7152f * prom_srgb8_to_linear(p[1]) +
-                                              0.0722f * prom_srgb8_to_linear(p[2])
-                                        : 0.0f;
-        }
-        if (job->views->ids)
-            memcpy(job->views->ids[dir] + to, job->baker->ids + from,
-                   PROM_VIEW_PX * sizeof(uint32_t));
-    }
-}
-
 void prom_baker_take_views(prom_baker *baker, float radius, prom_views *views)
 {
     prom_target_clear(baker->target, nothing);
@@ -123,7 +83,7 @@ void prom_baker_take_views(prom_baker *baker, float radius, prom_views *views)
         // The viewport counts from the bottom, the read-back from the top.
         prom_pass pass = {
             .x = dir % PROM_DIR_GRID * PROM_VIEW_PX,
-            .y = ATLAS_PX - (dir / PROM_DIR_GRID + 1) * PROM_VIEW_PX,
+            .y = PROM_ATLAS_PX - (dir / PROM_DIR_GRID + 1) * PROM_VIEW_PX,
             .width = PROM_VIEW_PX,
             .height = PROM_VIEW_PX,
             .output = PROM_OUTPUT_LIT,
@@ -131,10 +91,9 @@ void prom_baker_take_views(prom_baker *baker, float radius, prom_views *views)
         orthographic(right, up, out, radius, radius, 2.0f * radius, pass.projection);
         prom_draw_list_submit(baker->list, baker->target, &pass);
     }
-    prom_target_read_rgba(baker->target, 0, 0, ATLAS_PX, ATLAS_PX, baker->rgba);
-    if (views->ids) prom_target_read_ids(baker->target, 0, 0, ATLAS_PX, ATLAS_PX, baker->ids);
-    unpack_job job = {.baker = baker, .views = views};
-    prom_parallel_for(PROM_DIRS, unpack_view, &job);
+    prom_target_read_rgba(baker->target, 0, 0, PROM_ATLAS_PX, PROM_ATLAS_PX, views->rgba[0]);
+    if (views->ids)
+        prom_target_read_ids(baker->target, 0, 0, PROM_ATLAS_PX, PROM_ATLAS_PX, views->ids);
 }
 
 void prom_baker_take_faces(prom_baker *baker, const float half[3], prom_output output,

@@ -12,15 +12,25 @@
 #define PROM_VIEW_PX 128
 #define PROM_VIEW_PIXELS (PROM_VIEW_PX * PROM_VIEW_PX)
 
-// Orthographic views in which the diameter of the subject's bounding sphere is PROM_VIEW_PX.
+// Orthographic views in which the diameter of the subject's bounding sphere is PROM_VIEW_PX, as
+// they come from the device: one atlas, rows from the top, the view of direction bin d at
+// column d % PROM_DIR_GRID and row d / PROM_DIR_GRID.
+#define PROM_ATLAS_PX (PROM_VIEW_PX * PROM_DIR_GRID)
+#define PROM_ATLAS_PIXELS ((size_t)PROM_ATLAS_PX * PROM_ATLAS_PX)
+
 typedef struct prom_views {
-    float (*luminance)[PROM_VIEW_PIXELS]; // per direction: linear, times coverage
-    float (*coverage)[PROM_VIEW_PIXELS];  // 0 or 1
-    uint32_t (*ids)[PROM_VIEW_PIXELS];    // of the items; PROM_NONE where nothing is
+    uint8_t (*rgba)[4]; // sRGB-encoded; alpha of at least 128 is covered
+    uint32_t *ids;      // of the items; PROM_NONE where nothing is. NULL: not wanted
 } prom_views;
 
 void prom_views_init(prom_views *views, bool with_ids);
-void prom_views_finish(prom_views *views);
+void prom_views_finish(prom_views *views); // {0} is allowed
+// The first pixel of a view in the atlas.
+static inline size_t prom_view_start(uint32_t dir)
+{
+    return (size_t)(dir / PROM_DIR_GRID) * PROM_VIEW_PX * PROM_ATLAS_PX +
+           dir % PROM_DIR_GRID * PROM_VIEW_PX;
+}
 
 typedef struct prom_baker prom_baker;
 

@@ -5,21 +5,35 @@
 #include "builder/bake.h"
 #include "builder/measure.h"
 #include "builder/pipeline.h"
+#include "builder/store.h"
+#include "metaobj/base/threads.h"
 #include "metaobj/container.h"
 
-#define PROM_LEVELS_MAX 8
+#define PROM_LEVELS_MAX 12
+#define PROM_OWN_LEVELS_MAX 8        // of them from simplification; the rest is the artist's
+#define PROM_LEVEL_MIN_TRIANGLES 12u // a box has as many
 #define PROM_FACE_PX 64              // side of a stored impostor picture
 #define PROM_CLUSTER_TRIANGLES 2048u // of a cluster's fine mesh, at most
 
-// The meshes of a leaf's prototype.
+typedef struct prom_level {
+    prom_mesh mesh; // empty once its representation is written
+    float error;
+    bool artist;           // came with the scene
+    float switch_distance; // as in its representation
+    // Known when the prototype is settled:
+    bool kept;
+    float max_size_px;
+    uint32_t device_id; // of the mesh in the renderer
+} prom_level;
+
+// The meshes of a leaf's prototype, from fine to cheap.
 typedef struct prom_shape_build {
-    prom_mesh levels[PROM_LEVELS_MAX];
-    float errors[PROM_LEVELS_MAX];
+    prom_level levels[PROM_LEVELS_MAX];
     uint32_t level_count;
-    float max_size_px[PROM_LEVELS_MAX]; // as in its representation
-    uint32_t mesh_ids[PROM_LEVELS_MAX]; // container and renderer ids; PROM_NONE: not kept
     prom_mesh merge; // a level with its materials baked to colours, for cluster meshes
     float merge_error;
+    uint64_t hash;                 // of the levels' meshes
+    uint64_t levels_key, leaf_key; // of its units of work
 } prom_shape_build;
 
 // The meshes of a cluster's prototype: a fine and a coarse one.
@@ -28,6 +42,8 @@ typedef struct prom_cluster_build {
     prom_mesh levels[PROM_CLUSTER_LEVELS];
     float errors[PROM_CLUSTER_LEVELS];
     uint32_t level_count;
+    uint64_t hash; // of the levels' meshes
+    uint64_t merge_key, cluster_key;
 } prom_cluster_build;
 
 typedef struct prom_build_state {
@@ -54,11 +70,14 @@ typedef struct prom_build_state {
     PROM_ARRAY(prom_texture_info) texture_infos;
 
     prom_writer *writer;
+    prom_store *store;
+    uint64_t program_key, device_key; // what every unit, and every measured unit, depends on
+    uint64_t *material_keys;          // per material: its values and its picture
     prom_context *context;
     prom_renderer *renderer;
     prom_baker *baker;
     prom_measure *measure;
-    prom_views truth, views;
+    prom_pool *pool;
 } prom_build_state;
 
 // ---- stages, in this order (each in the file of its name)
@@ -78,32 +97,27 @@ prom_status prom_stage_model(prom_build_state *b, prom_error *error);
 
 // ---- shared by the stages
 
-// Adds a texture to the container and the renderer, under the same id.
-prom_status prom_build_add_texture(prom_build_state *b, const prom_texture *texture,
-                                   uint32_t *id, prom_error *error);
-// A mesh in its prototype's frame, moved so that the views look at the bounds' centre.
-prom_draw_item prom_build_item_around(uint32_t mesh, const float center[3]);
+// Adds a texture to the container.
+prom_status prom_build_write_texture(prom_build_state *b, const prom_texture *texture,
+                                     uint32_t *id, prom_error *error);
+// A prom_fail for a device without memory; `what` as in "meshes".
+prom_status prom_build_device_full(const char *what, prom_error *error);
 
-// How a representation comes into the model.
-typedef enum prom_admission {
-    PROM_ADMIT_UNMEASURED, // as it is: accuracy 1, no views taken
-    PROM_ADMIT_TRUTH, // it is the object: coverage and the truth of what follows come from it
-    PROM_ADMIT_MEASURED, // kept if it is closed enough to be shown at some size
-} prom_admission;
+// ---- keys of units: hashes of all that their results depend on (unit_keys.c)
 
-// Adds a representation to prototype `p`, which must be the last one that got any: uploads the
-// mesh (in the frame of the prototype), measures it, and if it is admitted writes it. `rep` has
-// kind, texture, flags, level, error; the rest is filled in. *mesh_id (NULL allowed) gets its
-// id, or PROM_NONE if it was not kept.
-prom_status prom_build_add_rep(prom_build_state *b, uint32_t p, const prom_mesh *mesh,
-                               const prom_representation *rep, prom_admission admission,
-                               uint32_t *mesh_id, prom_error *error);
+// Sets program_key; device_key, once there is a device; material_keys, once there are textures.
+void prom_keys_of_program(prom_build_state *b);
+void prom_keys_of_device(prom_build_state *b);
+void prom_keys_of_materials(prom_build_state *b);
+uint64_t prom_key_of_levels(const prom_build_state *b, uint32_t shape);
+uint64_t prom_key_of_leaf(const prom_build_state *b, uint32_t shape);
+// Of a cluster whose children's keys are set.
+uint64_t prom_key_of_merge(const prom_build_state *b, uint32_t cluster);
+uint64_t prom_key_of_cluster(const prom_build_state *b, uint32_t cluster);
 
-// Average-colour box and, if `textured`, textured box of the subject set in the baker (items
-// relative to the bounds' centre). lit: bake the light in (clusters). Each is added to
-// prototype `p` and measured.
-prom_status prom_build_add_boxes(prom_build_state *b, uint32_t p, const float center[3],
-                                 const float half[3], float radius, bool lit, bool textured,
-                                 prom_error *error);
+// ---- memory
+
+// Bytes that the work of this process may still take within --memory-mb, at least `least`.
+uint64_t prom_build_spare_memory(const prom_build_state *b, uint64_t least);
 
 #endif

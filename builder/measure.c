@@ -24,21 +24,16 @@ typedef struct scratch {
     float grey[WINDOW_MAX * WINDOW_MAX], error[WINDOW_MAX * WINDOW_MAX];
     float features[2 * WINDOW_MAX * WINDOW_MAX];
     float *metric;
+    float *truth;              // features of the true object in one direction: size, background
+    level covered[PROM_SIZES]; // and its pictures
 } scratch;
 
 struct prom_measure {
     float background[BACKGROUNDS]; // linear luminance
     float encode[ENCODE_STEPS + 1];
-    size_t features_of_size[PROM_SIZES + 1]; // offsets of a size's features in a direction's
-    size_t coverage_of_size[PROM_SIZES + 1];
-    float *features; // of the truth: direction, size, background
-    float *coverage; // of the truth: direction, size
+    size_t features_of_size[PROM_SIZES + 1]; // offsets into scratch.truth
     scratch *scratches;
     unsigned threads;
-    uint32_t gaps[PROM_DIRS]; // pixels at PROM_GAP_PX
-    const prom_views *views;  // of the running call
-    uint16_t *coverage_out;
-    uint8_t (*accuracy_out)[PROM_SIZES];
 };
 
 static uint32_t size_px(uint32_t s)
@@ -59,32 +54,49 @@ prom_measure *prom_measure_create(float mean_luminance)
     m->background[1] = prom_linear_to_srgb(mean_luminance) > 0.5f ? 0.02f : 0.8f;
     for (int i = 0; i <= ENCODE_STEPS; i++)
         m->encode[i] = prom_linear_to_srgb((float)i / ENCODE_STEPS);
-    for (uint32_t s = 0; s < PROM_SIZES; s++) {
+    for (uint32_t s = 0; s < PROM_SIZES; s++)
         m->features_of_size[s + 1] =
             m->features_of_size[s] + BACKGROUNDS * 2 * window_pixels(s);
-        m->coverage_of_size[s + 1] = m->coverage_of_size[s] + (size_t)size_px(s) * size_px(s);
-    }
-    m->features = prom_alloc(PROM_DIRS * m->features_of_size[PROM_SIZES], sizeof(float));
-    m->coverage = prom_alloc(PROM_DIRS * m->coverage_of_size[PROM_SIZES], sizeof(float));
     m->threads = prom_thread_count();
     m->scratches = prom_alloc(m->threads, sizeof *m->scratches);
-    for (unsigned t = 0; t < m->threads; t++)
-        m->scratches[t].metric =
-            prom_alloc(prom_edge_blur_scratch(WINDOW_MAX, WINDOW_MAX), sizeof(float));
+    for (unsigned t = 0; t < m->threads; t++) {
+        scratch *s = &m->scratches[t];
+        s->metric = prom_alloc(prom_edge_blur_scratch(WINDOW_MAX, WINDOW_MAX), sizeof(float));
+        s->truth = prom_alloc(m->features_of_size[PROM_SIZES], sizeof(float));
+    }
     return m;
 }
 
 void prom_measure_destroy(prom_measure *m)
 {
     if (!m) return;
-    for (unsigned t = 0; t < m->threads; t++) prom_free(m->scratches[t].metric);
+    for (unsigned t = 0; t < m->threads; t++) {
+        prom_free(m->scratches[t].metric);
+        prom_free(m->scratches[t].truth);
+    }
     prom_free(m->scratches);
-    prom_free(m->features);
-    prom_free(m->coverage);
     prom_free(m);
 }
 
-static void halve(const float *in, uint32_t side, float *out)
+// A view of the atlas as linear luminance times coverage, and coverage.
+static void unpack_view(const prom_views *views, uint32_t dir, level *out)
+{
+    for (uint32_t y = 0; y < PROM_VIEW_PX; y++) {
+        const uint8_t(*p)[4] = views->rgba + prom_view_start(dir) + (size_t)y * PROM_ATLAS_PX;
+        float *luminance = out->luminance + (size_t)y * PROM_VIEW_PX;
+        float *coverage = out->coverage + (size_t)y * PROM_VIEW_PX;
+        for (uint32_t x = 0; x < PROM_VIEW_PX; x++) {
+            bool covered = p[x][3] >= 128;
+            coverage[x] = covered ? 1.0f : 0.0f;
+            luminance[x] = covered ? 0.2126f * prom_srgb8_to_linear(p[x][0]) +
+                                         0.7152f * prom_srgb8_to_linear(p[x][1]) +
+                                         0.0722f * prom_srgb8_to_linear(p[x][2])
+                                   : 0.0f;
+        }
+    }
+}
+
+static void halve_plane(const float *in, uint32_t side, float *out)
 {
     uint32_t half = side / 2;
     for (uint32_t y = 0; y < half; y++) {
@@ -112,50 +124,33 @@ static void composite(const prom_measure *m, const level *in, uint32_t side, flo
     }
 }
 
-// Walks the sizes of one direction from the largest down, halving as it goes.
-static void each_size(prom_measure *m, size_t dir, scratch *s,
-                      void (*visit)(prom_measure *, size_t, uint32_t, const level *, scratch *))
+static void halve(const level *in, uint32_t side, level *out)
 {
-    memcpy(s->levels[0].luminance, m->views->luminance[dir], sizeof s->levels[0].luminance);
-    memcpy(s->levels[0].coverage, m->views->coverage[dir], sizeof s->levels[0].coverage);
-    int now = 0;
+    halve_plane(in->luminance, side, out->luminance);
+    halve_plane(in->coverage, side, out->coverage);
+}
+
+// The true object from one direction, at all sizes, into the scratch.
+static void take_truth(const prom_measure *m, const prom_views *views, uint32_t dir, scratch *s)
+{
+    unpack_view(views, dir, &s->covered[PROM_SIZES - 1]);
     for (uint32_t size = PROM_SIZES; size-- > 0;) {
-        visit(m, dir, size, &s->levels[now], s);
-        halve(s->levels[now].luminance, size_px(size), s->levels[!now].luminance);
-        halve(s->levels[now].coverage, size_px(size), s->levels[!now].coverage);
-        now = !now;
+        uint32_t side = size_px(size), wide = side + 2 * PAD;
+        float *features = s->truth + m->features_of_size[size];
+        for (int b = 0; b < BACKGROUNDS; b++, features += 2 * window_pixels(size)) {
+            composite(m, &s->covered[size], side, m->background[b], s->grey);
+            prom_edge_blur_features(s->grey, wide, wide, features, s->metric);
+        }
+        if (size) halve(&s->covered[size], side, &s->covered[size - 1]);
     }
 }
 
-static void keep_truth(prom_measure *m, size_t dir, uint32_t size, const level *in, scratch *s)
+static uint16_t covered_share(const level *largest)
 {
-    uint32_t side = size_px(size), wide = side + 2 * PAD;
-    float *features =
-        m->features + dir * m->features_of_size[PROM_SIZES] + m->features_of_size[size];
-    for (int b = 0; b < BACKGROUNDS; b++, features += 2 * window_pixels(size)) {
-        composite(m, in, side, m->background[b], s->grey);
-        prom_edge_blur_features(s->grey, wide, wide, features, s->metric);
-    }
-    memcpy(m->coverage + dir * m->coverage_of_size[PROM_SIZES] + m->coverage_of_size[size],
-           in->coverage, (size_t)side * side * sizeof(float));
-}
-
-static void truth_of_direction(void *user, size_t dir, unsigned thread)
-{
-    prom_measure *m = user;
-    each_size(m, dir, &m->scratches[thread], keep_truth);
     double covered = 0;
-    for (size_t i = 0; i < PROM_VIEW_PIXELS; i++) covered += m->views->coverage[dir][i];
+    for (size_t i = 0; i < PROM_VIEW_PIXELS; i++) covered += largest->coverage[i];
     double share = covered / (GLM_PI / 4.0 * PROM_VIEW_PIXELS);
-    m->coverage_out[dir] = (uint16_t)(65535.0 * (share > 1 ? 1 : share) + 0.5);
-}
-
-void prom_measure_set_truth(prom_measure *m, const prom_views *truth,
-                            uint16_t coverage[PROM_DIRS])
-{
-    m->views = truth;
-    m->coverage_out = coverage;
-    prom_parallel_for(PROM_DIRS, truth_of_direction, m);
+    return (uint16_t)(65535.0 * (share > 1 ? 1 : share) + 0.5);
 }
 
 static uint32_t count_gaps(const float *truth, const float *other, size_t count)
@@ -165,14 +160,11 @@ static uint32_t count_gaps(const float *truth, const float *other, size_t count)
     return gaps;
 }
 
-static void compare_size(prom_measure *m, size_t dir, uint32_t size, const level *in,
-                         scratch *s)
+static uint8_t compare_size(const prom_measure *m, uint32_t size, const level *in, scratch *s)
 {
     uint32_t side = size_px(size), wide = side + 2 * PAD;
-    const float *truth =
-        m->features + dir * m->features_of_size[PROM_SIZES] + m->features_of_size[size];
-    const float *covered =
-        m->coverage + dir * m->coverage_of_size[PROM_SIZES] + m->coverage_of_size[size];
+    const float *truth = s->truth + m->features_of_size[size];
+    const float *covered = s->covered[size].coverage;
     const size_t window = window_pixels(size);
     double area = 0, error = 0;
     for (size_t i = 0; i < (size_t)side * side; i++) area += fmaxf(covered[i], in->coverage[i]);
@@ -184,43 +176,48 @@ static void compare_size(prom_measure *m, size_t dir, uint32_t size, const level
         for (size_t i = 0; i < window; i++) sum += s->error[i];
         error += sum;
     }
-    if (size == GAP_SIZE) m->gaps[dir] = count_gaps(covered, in->coverage, (size_t)side * side);
     // Less than a pixel covered: its error is judged as if it were one.
     double accuracy = 1.0 - error / BACKGROUNDS / (area > 1.0 ? area : 1.0);
-    m->accuracy_out[dir][size] = (uint8_t)(255.0 * (accuracy > 0 ? accuracy : 0) + 0.5);
+    return (uint8_t)(255.0 * (accuracy > 0 ? accuracy : 0) + 0.5);
 }
 
-static void compare_direction(void *user, size_t dir, unsigned thread)
+static void compare(const prom_measure *m, uint32_t dir, prom_comparison *other, scratch *s)
 {
-    prom_measure *m = user;
-    each_size(m, dir, &m->scratches[thread], compare_size);
+    int now = 0;
+    unpack_view(other->views, dir, &s->levels[now]);
+    for (uint32_t size = PROM_SIZES; size-- > 0;) {
+        const level *in = &s->levels[now];
+        uint32_t side = size_px(size);
+        other->accuracy[dir][size] = compare_size(m, size, in, s);
+        if (size == GAP_SIZE)
+            other->gaps[dir] =
+                count_gaps(s->covered[size].coverage, in->coverage, (size_t)side * side);
+        if (size) halve(in, side, &s->levels[!now]);
+        now = !now;
+    }
 }
 
-float prom_measure_compare(prom_measure *m, const prom_views *views,
-                           uint8_t accuracy[PROM_DIRS][PROM_SIZES])
+void prom_measure_direction(prom_measure *m, unsigned thread, uint32_t dir,
+                            const prom_views *truth, uint16_t *coverage,
+                            prom_comparison *const *others, size_t count)
 {
-    m->views = views;
-    m->accuracy_out = accuracy;
-    prom_parallel_for(PROM_DIRS, compare_direction, m);
-    uint32_t most = 0;
-    for (uint32_t d = 0; d < PROM_DIRS; d++)
-        if (m->gaps[d] > most) most = m->gaps[d];
-    return (float)most;
+    scratch *s = &m->scratches[thread];
+    take_truth(m, truth, dir, s);
+    *coverage = covered_share(&s->covered[PROM_SIZES - 1]);
+    for (size_t i = 0; i < count; i++) compare(m, dir, others[i], s);
 }
 
-void prom_measure_shares(const prom_views *views, uint32_t item_count,
+void prom_measure_shares(const prom_views *views, uint32_t dir, uint32_t item_count,
                          uint16_t (*shares)[PROM_DIRS])
 {
-    uint32_t *counts = prom_alloc(item_count, sizeof *counts);
-    for (uint32_t dir = 0; dir < PROM_DIRS; dir++) {
-        memset(counts, 0, item_count * sizeof *counts);
-        uint64_t sum = 0;
-        for (size_t i = 0; i < PROM_VIEW_PIXELS; i++) {
-            uint32_t id = views->ids[dir][i];
-            if (id < item_count) counts[id]++, sum++;
-        }
-        for (uint32_t c = 0; c < item_count; c++)
-            shares[c][dir] = sum ? (uint16_t)(65535.0 * counts[c] / (double)sum + 0.5) : 0;
+    uint32_t *counts = prom_calloc(item_count, sizeof *counts);
+    uint64_t sum = 0;
+    for (uint32_t y = 0; y < PROM_VIEW_PX; y++) {
+        const uint32_t *ids = views->ids + prom_view_start(dir) + (size_t)y * PROM_ATLAS_PX;
+        for (uint32_t x = 0; x < PROM_VIEW_PX; x++)
+            if (ids[x] < item_count) counts[ids[x]]++, sum++;
     }
+    for (uint32_t c = 0; c < item_count; c++)
+        shares[c][dir] = sum ? (uint16_t)(65535.0 * counts[c] / (double)sum + 0.5) : 0;
     prom_free(counts);
 }

@@ -13,27 +13,30 @@
 
 typedef struct prom_measure prom_measure;
 
+// A representation under measurement, and what came of it.
+typedef struct prom_comparison {
+    const prom_views *views;
+    uint8_t accuracy[PROM_DIRS][PROM_SIZES]; // 255 = 1
+    uint32_t gaps[PROM_DIRS]; // pixels, at PROM_GAP_PX, that the object covers whole (9 tenths)
+                              // and the representation hardly (1 tenth): through them the
+                              // background would show
+} prom_comparison;
+
 // mean_luminance: linear, of the scene; the first background. The second one contrasts with it.
 prom_measure *prom_measure_create(float mean_luminance);
 void prom_measure_destroy(prom_measure *measure);
 
-// Sets the true object; coverage gets its covered share of the bounding sphere's disc per
-// direction, 65535 = 1.
-void prom_measure_set_truth(prom_measure *measure, const prom_views *truth,
-                            uint16_t coverage[PROM_DIRS]);
+// Measures representations in one direction bin; different directions may be measured by
+// several threads at a time (`thread` below prom_thread_count()). Accuracy is 1 - error summed
+// over the padded window / area covered in either picture, mean of both backgrounds. *coverage
+// gets the truth's covered share of the bounding sphere's disc, 65535 = 1.
+void prom_measure_direction(prom_measure *measure, unsigned thread, uint32_t dir,
+                            const prom_views *truth, uint16_t *coverage,
+                            prom_comparison *const *others, size_t count);
 
-// Accuracy of a representation against the truth set last: 1 - error summed over the padded
-// window / area covered in either picture, mean of both backgrounds; 255 = 1.
-// Returns the size of its gaps: the pixels, at PROM_GAP_PX and in the worst direction, that the
-// object covers whole (9 tenths) and the representation hardly (1 tenth), through which the
-// background would show.
-float prom_measure_compare(prom_measure *measure, const prom_views *views,
-                           uint8_t accuracy[PROM_DIRS][PROM_SIZES]);
-
-// Each item's share of the visible pixels per direction: shares[item][dir], summing to 65535
-// over the items up to rounding where anything is visible. counts come from views->ids <
-// item_count.
-void prom_measure_shares(const prom_views *views, uint32_t item_count,
+// Each item's share of the visible pixels in a direction: shares[item][dir], summing to 65535
+// over the items up to rounding where anything is visible. Items are views->ids < item_count.
+void prom_measure_shares(const prom_views *views, uint32_t dir, uint32_t item_count,
                          uint16_t (*shares)[PROM_DIRS]);
 
 #endif

@@ -9,6 +9,19 @@
 #include <stdio.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
+
+uint64_t prom_build_spare_memory(const prom_build_state *b, uint64_t least)
+{
+    unsigned long long pages = 0, resident = 0;
+    if (!b->options->memory_mb) return UINT64_MAX;
+    FILE *f = fopen("/proc/self/statm", "r");
+    if (f && fscanf(f, "%llu %llu", &pages, &resident) != 2) resident = 0;
+    if (f) fclose(f);
+    uint64_t limit = (uint64_t)b->options->memory_mb << 20;
+    uint64_t used = resident * (uint64_t)sysconf(_SC_PAGESIZE);
+    return used + least < limit ? limit - used : least;
+}
 
 static prom_status stage_import(prom_build_state *b, prom_error *error)
 {
@@ -17,7 +30,13 @@ static prom_status stage_import(prom_build_state *b, prom_error *error)
 
 static prom_status stage_objects(prom_build_state *b, prom_error *error)
 {
-    return prom_objects_find(&b->source, &b->options->objects, &b->objects, error);
+    prom_status status =
+        prom_objects_find(&b->source, &b->options->objects, &b->objects, error);
+    for (size_t i = 0; i < b->source.meshes.count; i++) { // the objects hold it all now
+        prom_mesh_finish(&b->source.meshes.data[i]);
+        b->source.meshes.data[i] = (prom_mesh){0};
+    }
+    return status;
 }
 
 static prom_status stage_tree(prom_build_state *b, prom_error *error)
@@ -38,8 +57,7 @@ static prom_status open_device(prom_build_state *b, prom_error *error)
     if (!b->renderer) return error->status;
     b->baker = prom_baker_create(b->renderer, error);
     if (!b->baker) return error->status;
-    prom_views_init(&b->truth, true);
-    prom_views_init(&b->views, false);
+    prom_keys_of_device(b);
     return PROM_OK;
 }
 
@@ -56,6 +74,7 @@ static uint64_t hash_objects(const prom_build_state *b, uint64_t h)
     for (size_t i = 0; i < b->objects.shapes.count; i++) {
         const prom_shape *s = &b->objects.shapes.data[i];
         h = prom_mesh_hash(&s->mesh, h + (uint64_t)s->layer);
+        for (uint32_t l = 0; l < s->level_count; l++) h = prom_mesh_hash(&s->levels[l].mesh, h);
     }
     for (size_t i = 0; i < b->objects.objects.count; i++) {
         const prom_object *o = &b->objects.objects.data[i];
@@ -90,8 +109,7 @@ static uint64_t hash_textures(const prom_build_state *b, uint64_t h)
 static uint64_t hash_levels(const prom_build_state *b, uint64_t h)
 {
     for (size_t i = 0; i < b->objects.shapes.count; i++)
-        for (uint32_t l = 0; l < b->shapes[i].level_count; l++)
-            h = prom_mesh_hash(&b->shapes[i].levels[l], h);
+        h = prom_hash(&b->shapes[i].hash, sizeof b->shapes[i].hash, h);
     return h;
 }
 
@@ -111,8 +129,7 @@ _Static_assert(sizeof(prom_representation) == 13 * 4, "hash_reps hashes no paddi
 static uint64_t hash_clusters(const prom_build_state *b, uint64_t h)
 {
     for (size_t i = 0; i < b->tree.clusters.count; i++)
-        for (uint32_t l = 0; l < b->clusters[i].level_count; l++)
-            h = prom_mesh_hash(&b->clusters[i].levels[l], h);
+        h = prom_hash(&b->clusters[i].hash, sizeof b->clusters[i].hash, h);
     return hash_reps(b, h);
 }
 
@@ -182,6 +199,7 @@ static prom_status run_stages(prom_build_state *b, const char *scene, prom_error
     };
     uint64_t hash = 0;
     b->scene_path = scene;
+    prom_keys_of_program(b);
     for (size_t i = 0; i < sizeof stages / sizeof *stages; i++) {
         double start = prom_clock_ms();
         prom_status status = stages[i].run(b, error);
@@ -214,6 +232,9 @@ static void fill_report(const prom_build_state *b, const char *path, prom_build_
         report->source_triangles += b->prototypes[m->prototype[i]].triangles;
     struct stat st;
     if (stat(path, &st) == 0) report->file_bytes = (uint64_t)st.st_size;
+    char *work = prom_store_path(path);
+    if (stat(work, &st) == 0) report->work_bytes = (uint64_t)st.st_size;
+    prom_free(work);
     FILE *f = fopen("/proc/self/status", "r");
     char line[128];
     unsigned long long kib;
@@ -234,13 +255,15 @@ static prom_build_options resolved(const prom_build_options *options)
     o.objects = prom_object_options_resolved(o.objects);
     if (!o.tree.max_children) o.tree.max_children = 16;
     if (!o.texture_mb) o.texture_mb = 256;
+    uint64_t memory = (uint64_t)o.memory_mb << 20;
+    if (memory && (!o.import.memory_bytes || o.import.memory_bytes > memory))
+        o.import.memory_bytes = memory;
     return o;
 }
 
 static void finish_state(prom_build_state *b)
 {
-    prom_views_finish(&b->truth);
-    prom_views_finish(&b->views);
+    prom_pool_destroy(b->pool);
     prom_measure_destroy(b->measure);
     prom_baker_destroy(b->baker);
     prom_renderer_destroy(b->renderer);
@@ -248,7 +271,7 @@ static void finish_state(prom_build_state *b)
     prom_writer_destroy(b->writer);
     for (size_t i = 0; b->shapes && i < b->objects.shapes.count; i++) {
         for (uint32_t l = 0; l < b->shapes[i].level_count; l++)
-            prom_mesh_finish(&b->shapes[i].levels[l]);
+            prom_mesh_finish(&b->shapes[i].levels[l].mesh);
         prom_mesh_finish(&b->shapes[i].merge);
     }
     for (size_t i = 0; b->clusters && i < b->tree.clusters.count; i++)
@@ -260,6 +283,7 @@ static void finish_state(prom_build_state *b)
     prom_free(b->clusters);
     prom_free(b->textures);
     prom_free(b->boxed);
+    prom_free(b->material_keys);
     prom_free(b->prototypes);
     prom_free(b->coverage);
     prom_array_finish(&b->reps);
@@ -273,6 +297,17 @@ static void finish_state(prom_build_state *b)
     prom_source_finish(&b->source);
 }
 
+static prom_store *open_store(const char *out_path, prom_build_from from, prom_error *error)
+{
+    static const prom_unit_kind redo[] = {
+        [PROM_BUILD_FROM_NOWHERE] = PROM_UNIT_COUNT,
+        [PROM_BUILD_FROM_START] = PROM_UNIT_LEVELS,
+        [PROM_BUILD_FROM_LEAVES] = PROM_UNIT_LEAF,
+        [PROM_BUILD_FROM_CLUSTERS] = PROM_UNIT_MERGE,
+    };
+    return prom_store_open(out_path, redo[from], error);
+}
+
 prom_status prom_build(const char *scene_path, const char *out_path,
                        const prom_build_options *options, prom_build_report *report,
                        prom_error *error)
@@ -282,9 +317,14 @@ prom_status prom_build(const char *scene_path, const char *out_path,
     prom_error local;
     if (!error) error = &local;
     prom_status status = PROM_OK;
-    b.writer = prom_writer_create(out_path, error);
+    b.writer = prom_writer_create(out_path, error); // and with it the lock
     if (!b.writer) status = error->status;
+    if (!status) b.store = open_store(out_path, all.from, error);
+    if (!status && !b.store) status = error->status;
     if (!status) status = run_stages(&b, scene_path, error);
+    if (!status) status = prom_store_prune(b.store, error);
+    prom_store_close(b.store);
+    if (!status && all.drop_work) status = prom_store_delete(out_path, error);
     if (!status) status = prom_writer_finish(b.writer, error);
     if (!status && report) fill_report(&b, out_path, report);
     finish_state(&b);

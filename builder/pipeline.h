@@ -6,21 +6,37 @@
 #include "builder/source.h"
 #include "builder/tree.h"
 
+// From where on nothing is taken over from earlier builds. Import, objects, tree and textures
+// are quick and done each time.
+typedef enum prom_build_from {
+    PROM_BUILD_FROM_NOWHERE, // all that is still right is taken over
+    PROM_BUILD_FROM_START,
+    PROM_BUILD_FROM_LEAVES,
+    PROM_BUILD_FROM_CLUSTERS,
+} prom_build_from;
+
 typedef struct prom_build_options {
     prom_import_options import;
     prom_object_options objects;
     prom_tree_options tree;
     uint32_t texture_mb; // bytes of impostor pictures on the device, in MiB; 0: 256
     const char *profile; // cost profile that the content names; NULL: none
+    uint32_t memory_mb;  // that the work may take, beside what the device's driver does; 0: any
+    // What earlier builds left in X.prom.work:
+    prom_build_from from; // stages from this one on are done anew
+    bool drop_work;       // it is deleted when the build has succeeded
 } prom_build_options;
 
 typedef struct prom_build_report {
     uint64_t source_triangles; // instanced
     uint32_t objects, prototypes, nodes, max_children, representations;
-    uint64_t file_bytes, peak_bytes;
+    uint64_t file_bytes, work_bytes, peak_bytes;
 } prom_build_report;
 
-// Builds scene_path into out_path. Nothing is left behind on failure.
+// Builds scene_path into out_path. On failure the model is as it was before, and what was done
+// so far is kept beside it in out_path.work: the next build goes on from there, whatever
+// stopped this one. Finished, the work file serves builds with other settings; it may be
+// deleted at any time. Uses prom_thread_count() cores.
 prom_status prom_build(const char *scene_path, const char *out_path,
                        const prom_build_options *options, prom_build_report *report,
                        prom_error *error);

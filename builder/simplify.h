@@ -37,6 +37,9 @@ bool prom_simplify(const prom_mesh *mesh, const prom_simplify_options *options, 
 uint32_t prom_simplify_levels(const prom_mesh *mesh, bool lock_border, uint32_t min_triangles,
                               uint32_t max_levels, prom_mesh *levels, float *errors);
 
+// Greatest distance between two surfaces, both ways, over at most 16384 vertices of each,
+// evenly picked: a lower bound. INFINITY if one of them is empty.
+float prom_mesh_deviation(const prom_mesh *a, const prom_mesh *b);
 // Welds vertices that are equal in all attributes, and with position_tolerance > 0 also snaps
 // positions within it; drops degenerate triangles and unused vertices; optimises for the vertex
 // cache and overdraw.

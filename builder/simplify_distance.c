@@ -205,3 +205,27 @@ float prom_work_deviation(const prom_work *work, const prom_index_array *faces)
     prom_surface_finish(&after);
     return deviation;
 }
+
+static float vertices_from(const prom_mesh *mesh, const prom_surface *surface, float so_far)
+{
+    uint32_t hint = PROM_NONE, stride = mesh->vertex_count / MAX_SAMPLES + 1;
+    for (uint32_t v = 0; v < mesh->vertex_count; v += stride) {
+        prom_nearest near =
+            prom_surface_nearest(surface, mesh->vertices[v].position, so_far, hint);
+        so_far = fmaxf(so_far, near.distance);
+        hint = near.slot;
+    }
+    return so_far;
+}
+
+float prom_mesh_deviation(const prom_mesh *a, const prom_mesh *b)
+{
+    prom_surface surfaces[2];
+    prom_surface_init(&surfaces[0], a->vertices, a->vertex_count, a->indices, a->index_count);
+    prom_surface_init(&surfaces[1], b->vertices, b->vertex_count, b->indices, b->index_count);
+    float deviation = vertices_from(a, &surfaces[1], 0);
+    deviation = vertices_from(b, &surfaces[0], deviation);
+    prom_surface_finish(&surfaces[0]);
+    prom_surface_finish(&surfaces[1]);
+    return deviation;
+}

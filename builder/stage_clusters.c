@@ -1,11 +1,11 @@
 // Clusters, upwards: merged meshes on all cores, then coverage, shares, impostors and accuracy
 // on the device. The truth that a cluster is measured against is its leaves, each at a level
 // whose error stays under half a pixel of the largest view.
-#include "builder/build.h"
+#include "builder/subject.h"
 
 #include "builder/cluster_mesh.h"
-#include "metaobj/base/log.h"
-#include "metaobj/base/threads.h"
+
+#include <pthread.h>
 
 #define FINE_SHARE 4u   // the fine mesh has this part of its pieces' triangles
 #define COARSE_SHARE 8u // and the coarse one this part of the fine
@@ -60,19 +60,14 @@ static uint32_t clamped(uint32_t value, uint32_t least, uint32_t most)
 typedef struct merge_job {
     prom_build_state *b;
     const uint32_t *clusters;
+    pthread_mutex_t lock;
+    prom_error error; // the first
 } merge_job;
 
-static void merge_cluster(void *user, size_t i, unsigned thread)
+static void make_meshes(prom_build_state *b, const prom_tree_cluster *cluster,
+                        prom_cluster_build *out)
 {
-    (void)thread;
-    const merge_job *job = user;
-    prom_build_state *b = job->b;
-    uint32_t index = job->clusters[i];
-    const prom_tree_cluster *cluster = &b->tree.clusters.data[index];
-    prom_cluster_build *out = &b->clusters[index];
     bool surface = cluster->layer == PROM_LAYER_SURFACE;
-    if (cluster->mixed || cluster->layer == PROM_LAYER_BLENDED) return;
-
     const prom_tree_node *node = &b->tree.nodes.data[cluster->node];
     piece_list pieces = {0};
     collect_pieces(b, cluster->node, node->origin, &pieces);
@@ -97,6 +92,74 @@ static void merge_cluster(void *user, size_t i, unsigned thread)
     }
 }
 
+static void pack_meshes(const prom_cluster_build *c, prom_pack *pack)
+{
+    prom_pack_bytes(pack, &c->level_count, sizeof c->level_count);
+    for (uint32_t l = 0; l < c->level_count; l++) {
+        prom_pack_bytes(pack, &c->errors[l], sizeof c->errors[l]);
+        prom_pack_mesh(pack, &c->levels[l]);
+    }
+}
+
+static bool unpack_meshes(prom_cluster_build *c, const prom_pack *pack)
+{
+    prom_unpack in = {.at = pack->data, .left = pack->count};
+    c->level_count = prom_unpack_u32(&in, PROM_CLUSTER_LEVELS);
+    for (uint32_t l = 0; l < c->level_count; l++) {
+        prom_unpack_bytes(&in, &c->errors[l], sizeof c->errors[l]);
+        prom_unpack_mesh(&in, &c->levels[l]);
+    }
+    if (prom_unpack_end(&in)) return true;
+    for (uint32_t l = 0; l < PROM_CLUSTER_LEVELS; l++) {
+        prom_mesh_finish(&c->levels[l]);
+        c->levels[l] = (prom_mesh){0};
+    }
+    c->level_count = 0;
+    return false;
+}
+
+// Blended things are never inside a picture, and things of several layers have none.
+static bool has_pictures(const prom_tree_cluster *cluster)
+{
+    return !cluster->mixed && cluster->layer != PROM_LAYER_BLENDED;
+}
+
+static void merge_cluster(void *user, size_t i, unsigned thread)
+{
+    (void)thread;
+    merge_job *job = user;
+    prom_build_state *b = job->b;
+    const prom_tree_cluster *cluster = &b->tree.clusters.data[job->clusters[i]];
+    prom_cluster_build *out = &b->clusters[job->clusters[i]];
+    out->merge_key = prom_key_of_merge(b, job->clusters[i]);
+    if (!has_pictures(cluster)) return;
+    prom_pack pack = {0};
+    if (!prom_store_get(b->store, PROM_UNIT_MERGE, out->merge_key, &pack) ||
+        !unpack_meshes(out, &pack)) {
+        prom_error error = {0};
+        make_meshes(b, cluster, out);
+        pack.count = 0;
+        pack_meshes(out, &pack);
+        if (prom_store_put(b->store, PROM_UNIT_MERGE, out->merge_key, &pack, &error)) {
+            pthread_mutex_lock(&job->lock);
+            if (!job->error.status) job->error = error;
+            pthread_mutex_unlock(&job->lock);
+        }
+    }
+    prom_array_finish(&pack);
+    for (uint32_t l = 0; l < out->level_count; l++)
+        out->hash = prom_mesh_hash(&out->levels[l], out->hash);
+}
+
+static prom_status merge_row(prom_build_state *b, const uint32_t *clusters, size_t count,
+                             prom_error *error)
+{
+    merge_job job = {.b = b, .clusters = clusters, .lock = PTHREAD_MUTEX_INITIALIZER};
+    prom_parallel_for(count, merge_cluster, &job);
+    if (job.error.status) *error = job.error;
+    return job.error.status;
+}
+
 // Items of all leaves below `node`, around `center` (world), with one id, each at the coarsest
 // level that is as good as the object in views of px_per_unit.
 static void collect_truth(const prom_build_state *b, uint32_t node, uint32_t id,
@@ -114,77 +177,79 @@ static void collect_truth(const prom_build_state *b, uint32_t node, uint32_t id,
     uint32_t level = 0;
     float size_px = 2.0f * b->prototypes[object->shape].radius * scale * px_per_unit;
     for (uint32_t l = 1; l < s->level_count; l++)
-        if (s->mesh_ids[l] != PROM_NONE && size_px <= s->max_size_px[l] &&
-            s->errors[l] * scale * px_per_unit <= TRUTH_ERROR_PX)
+        if (s->levels[l].kept && !s->levels[l].artist && size_px <= s->levels[l].max_size_px &&
+            s->levels[l].error * scale * px_per_unit <= TRUTH_ERROR_PX)
             level = l;
-    prom_draw_item item = {.mesh = s->mesh_ids[level], .texture = PROM_NONE, .id = id};
+    prom_draw_item item = {.mesh = s->levels[level].device_id, .texture = PROM_NONE, .id = id};
     for (int a = 0; a < 3; a++)
         item.origin[a] = (float)(object->placement.origin[a] - center[a]);
     memcpy(item.basis, object->placement.basis, sizeof item.basis);
     prom_array_push(items, item);
 }
 
-static void measure_truth(prom_build_state *b, uint32_t p, uint32_t node, item_list *items)
+static void collect_items(const prom_build_state *b, const prom_subject *s,
+                          const prom_tree_cluster *cluster, item_list *items)
 {
-    prom_prototype *proto = &b->prototypes[p];
-    const prom_tree_node *n = &b->tree.nodes.data[node];
-    float px_per_unit = PROM_VIEW_PX / (2.0f * proto->radius);
-    items->count = 0;
+    const prom_tree_node *n = &b->tree.nodes.data[cluster->node];
+    float px_per_unit = PROM_VIEW_PX / (2.0f * b->prototypes[s->prototype].radius);
     for (uint32_t c = 0; c < n->child_count; c++)
-        collect_truth(b, n->first_child + c, c, b->model.center[node], px_per_unit, items);
-    prom_baker_set_subject(b->baker, items->data, items->count);
-    prom_baker_take_views(b->baker, proto->radius, &b->truth);
-    prom_measure_set_truth(b->measure, &b->truth, b->coverage[p]);
-    proto->first_share = (uint32_t)b->shares.count;
-    proto->child_count = n->child_count;
-    struct prom_share_row *rows = prom_array_extend(&b->shares, n->child_count);
-    prom_measure_shares(&b->truth, n->child_count, (uint16_t(*)[PROM_DIRS])rows);
+        collect_truth(b, n->first_child + c, c, b->model.center[cluster->node], px_per_unit,
+                      items);
 }
 
-static prom_status add_meshes(prom_build_state *b, uint32_t index, uint32_t p,
-                              prom_error *error)
+static prom_status begin(prom_subject *s, uint32_t index, prom_error *error)
 {
-    const prom_cluster_build *cluster = &b->clusters[index];
-    for (uint32_t l = 0; l < cluster->level_count; l++) {
-        prom_representation rep = {.kind = PROM_REP_MESH,
-                                   .texture = PROM_NONE,
-                                   .level = l,
-                                   .error = cluster->errors[l]};
-        prom_status status = prom_build_add_rep(b, p, &cluster->levels[l], &rep,
-                                                PROM_ADMIT_MEASURED, NULL, error);
-        if (status) return status;
-    }
-    return PROM_OK;
-}
-
-static prom_status add_cluster(prom_build_state *b, uint32_t index, item_list *items,
-                               prom_error *error)
-{
+    (void)error;
+    prom_build_state *b = s->build;
     const prom_tree_cluster *cluster = &b->tree.clusters.data[index];
-    uint32_t p = (uint32_t)b->objects.shapes.count + index;
-    prom_prototype *proto = &b->prototypes[p];
+    prom_cluster_build *meshes = &b->clusters[index];
+    s->prototype = (uint32_t)b->objects.shapes.count + index;
+    prom_prototype *proto = &b->prototypes[s->prototype];
     proto->flags = PROM_PROTO_CLUSTER;
     if (!cluster->mixed && cluster->layer == PROM_LAYER_SURFACE)
         proto->flags |= PROM_PROTO_SURFACE;
     if (!cluster->mixed && cluster->layer == PROM_LAYER_BLENDED)
         proto->flags |= PROM_PROTO_BLENDED;
-    measure_truth(b, p, cluster->node, items);
-    if (cluster->mixed || cluster->layer == PROM_LAYER_BLENDED) return PROM_OK;
-    prom_status status = add_meshes(b, index, p, error);
-    if (status || cluster->layer != PROM_LAYER_OBJECT) return status;
-    prom_baker_set_subject(b->baker, items->data, items->count); // the captures show the truth
-    return prom_build_add_boxes(b, p, proto->center, proto->half, proto->radius, true,
-                                b->boxed[p], error);
+    s->key = meshes->cluster_key = prom_key_of_cluster(b, index);
+    s->child_count = cluster->child_count;
+    s->shares = prom_calloc(s->child_count, sizeof *s->shares);
+    for (uint32_t l = 0; l < meshes->level_count; l++) {
+        prom_representation rep = {.kind = PROM_REP_MESH,
+                                   .texture = PROM_NONE,
+                                   .level = l,
+                                   .error = meshes->errors[l],
+                                   .switch_distance = INFINITY};
+        prom_subject_add(s, &meshes->levels[l], &rep, PROM_ADMIT_MEASURED);
+    }
+    return PROM_OK;
+}
+
+static prom_status draw(prom_subject *s, uint32_t index, prom_error *error)
+{
+    prom_build_state *b = s->build;
+    const prom_tree_cluster *cluster = &b->tree.clusters.data[index];
+    item_list items = {0};
+    collect_items(b, s, cluster, &items);
+    prom_baker_set_subject(b->baker, items.data, items.count);
+    prom_subject_take_truth(s, true);
+    prom_status status = PROM_OK;
+    for (uint32_t l = 0; l < s->count && !status; l++)
+        status = prom_subject_take_views(s, l, PROM_NONE, error);
+    // The captures show the truth.
+    if (!status && has_pictures(cluster) && cluster->layer == PROM_LAYER_OBJECT)
+        status = prom_subject_add_boxes(s, items.data, items.count, true, error);
+    prom_array_finish(&items);
+    return status;
 }
 
 prom_status prom_stage_clusters(prom_build_state *b, prom_error *error)
 {
+    static const prom_subject_class class = {PROM_UNIT_CLUSTER, begin, draw, NULL, NULL};
     size_t count = b->tree.clusters.count;
     prom_build_place_nodes(b);
     b->clusters = prom_calloc(count, sizeof *b->clusters);
     prom_progress progress;
     prom_progress_begin(&progress, "clusters", count);
-    item_list items = {0};
     PROM_ARRAY(uint32_t) row = {0}; // clusters of one height
     prom_status status = PROM_OK;
     size_t done = 0;
@@ -192,16 +257,13 @@ prom_status prom_stage_clusters(prom_build_state *b, prom_error *error)
         row.count = 0;
         for (uint32_t c = 0; c < count; c++)
             if (b->tree.clusters.data[c].height == height) prom_array_push(&row, c);
-        merge_job job = {.b = b, .clusters = row.data};
-        prom_parallel_for(row.count, merge_cluster, &job);
-        for (size_t i = 0; i < row.count && !status; i++) {
-            status = add_cluster(b, row.data[i], &items, error);
-            prom_progress_step(&progress, 1);
-        }
+        status = merge_row(b, row.data, row.count, error);
+        if (!status)
+            status =
+                prom_subjects_run(b, &class, row.data, (uint32_t)row.count, &progress, error);
         done += row.count;
     }
     prom_array_finish(&row);
-    prom_array_finish(&items);
     if (!status) prom_progress_end(&progress);
     return status;
 }

@@ -1,126 +1,9 @@
-// Leaves: mesh levels on all cores, then impostors and accuracy tables on the device.
-#include "builder/build.h"
+// Leaves: representations of the shapes' prototypes, from their levels and boxes.
+#include "builder/subject.h"
 
-#include "builder/cluster_mesh.h"
-#include "builder/simplify.h"
-#include "builder/textures.h"
 #include "metaobj/base/log.h"
-#include "metaobj/base/threads.h"
 
-#define MIN_TRIANGLES 12u     // of a level; a box has as many
-#define MERGE_TRIANGLES 2048u // of the level that goes into cluster meshes
-#define SHEET_FLATNESS 0.05f  // thinner than this part of its length and width
-#define BOXED_TRIANGLES 64u   // fewer, and a textured box saves nothing
-
-prom_status prom_stage_textures(prom_build_state *b, prom_error *error)
-{
-    size_t count = b->source.images.count;
-    b->textures = prom_calloc(count, sizeof *b->textures);
-    prom_textures_make(&b->source, b->textures);
-    for (size_t i = 0; i < count; i++) {
-        uint32_t id;
-        prom_status status = prom_build_add_texture(b, &b->textures[i], &id, error);
-        if (status) return status;
-    }
-    prom_renderer_set_materials(b->renderer, b->source.materials.data,
-                                (uint32_t)b->source.materials.count);
-    return PROM_OK;
-}
-
-typedef struct levels_job {
-    prom_build_state *b;
-    prom_progress progress;
-} levels_job;
-
-// A pavement, a stretch of road, a wall: flat, and likely to meet others at its border, which
-// no level may move then.
-static bool is_sheet(const prom_box *bounds)
-{
-    float half[3];
-    prom_box_half(bounds, half);
-    for (int a = 0; a < 3; a++)
-        if (half[a] < SHEET_FLATNESS * fminf(half[(a + 1) % 3], half[(a + 2) % 3])) return true;
-    return false;
-}
-
-// Welds, but leaves a mesh without any area as it is: it shows nothing, and does no harm.
-static void weld(prom_mesh *mesh)
-{
-    prom_mesh welded;
-    prom_mesh_copy(&welded, mesh);
-    prom_mesh_weld(&welded, 0);
-    if (!welded.index_count) {
-        prom_mesh_finish(&welded);
-        return;
-    }
-    prom_mesh_finish(mesh);
-    *mesh = welded;
-}
-
-static void make_levels(void *user, size_t i, unsigned thread)
-{
-    (void)thread;
-    levels_job *job = user;
-    prom_shape *shape = &job->b->objects.shapes.data[i];
-    prom_shape_build *s = &job->b->shapes[i];
-    weld(&shape->mesh);
-    bool fixed = shape->layer == PROM_LAYER_BACKDROP || shape->layer == PROM_LAYER_BLENDED;
-    bool lock = shape->lock_border || is_sheet(&shape->bounds);
-    s->level_count = prom_simplify_levels(&shape->mesh, lock, MIN_TRIANGLES,
-                                          fixed ? 1 : PROM_LEVELS_MAX, s->levels, s->errors);
-    if (!s->level_count) { // nothing in it has an area
-        s->levels[0] = shape->mesh;
-        s->level_count = 1;
-        shape->mesh = (prom_mesh){0};
-    }
-    prom_mesh_finish(&shape->mesh); // level 0 holds it now
-    uint32_t merge = 0;
-    while (merge + 1 < s->level_count && s->levels[merge].index_count / 3 > MERGE_TRIANGLES)
-        merge++;
-    if (!fixed)
-        prom_mesh_bake_colors(&s->levels[merge], job->b->source.materials.data,
-                              job->b->textures, &s->merge);
-    s->merge_error = s->errors[merge];
-    prom_progress_step(&job->progress, 1);
-}
-
-// Area-weighted mean luminance of what clusters will merge: the scene's own background.
-static float mean_luminance(const prom_build_state *b)
-{
-    double sum = 0, area = 0;
-    for (size_t i = 0; i < b->objects.shapes.count; i++) {
-        const prom_mesh *m = &b->shapes[i].merge;
-        double weight = b->objects.shapes.data[i].instances;
-        for (uint32_t t = 0; t + 2 < m->index_count; t += 3) {
-            const prom_vertex *v[3];
-            for (int k = 0; k < 3; k++) v[k] = &m->vertices[m->indices[t + k]];
-            vec3 e1, e2, n;
-            glm_vec3_sub((float *)v[1]->position, (float *)v[0]->position, e1);
-            glm_vec3_sub((float *)v[2]->position, (float *)v[0]->position, e2);
-            glm_vec3_cross(e1, e2, n);
-            double a = weight * glm_vec3_norm(n);
-            const uint8_t *c = v[0]->color;
-            sum += a * (0.2126f * prom_srgb8_to_linear(c[0]) +
-                        0.7152f * prom_srgb8_to_linear(c[1]) +
-                        0.0722f * prom_srgb8_to_linear(c[2]));
-            area += a;
-        }
-    }
-    return area > 0 ? (float)(sum / area) : 0.2f;
-}
-
-prom_status prom_stage_levels(prom_build_state *b, prom_error *error)
-{
-    (void)error;
-    size_t count = b->objects.shapes.count;
-    b->shapes = prom_calloc(count, sizeof *b->shapes);
-    levels_job job = {.b = b};
-    prom_progress_begin(&job.progress, "levels", count);
-    prom_parallel_for(count, make_levels, &job);
-    prom_progress_end(&job.progress);
-    b->mean_luminance = mean_luminance(b);
-    return PROM_OK;
-}
+#define BOXED_TRIANGLES 64u // fewer, and a textured box saves nothing
 
 static uint32_t flags_of_layer(prom_layer layer)
 {
@@ -132,42 +15,100 @@ static uint32_t flags_of_layer(prom_layer layer)
     return flags[layer];
 }
 
-static prom_status add_leaf(prom_build_state *b, uint32_t p, prom_error *error)
+static void fill_prototype(prom_build_state *b, uint32_t p)
 {
     const prom_shape *shape = &b->objects.shapes.data[p];
-    prom_shape_build *s = &b->shapes[p];
+    const prom_mesh *mesh = &b->shapes[p].levels[0].mesh;
     prom_prototype *proto = &b->prototypes[p];
     proto->flags = flags_of_layer(shape->layer);
-    proto->first_share = PROM_NONE;
-    proto->triangles = s->levels[0].index_count / 3;
-    prom_box bounds = prom_mesh_bounds(&s->levels[0]);
+    proto->triangles = mesh->index_count / 3;
+    prom_box bounds = prom_mesh_bounds(mesh);
     prom_box_center(&bounds, proto->center);
     prom_box_half(&bounds, proto->half);
     // The sphere around the box, not around the vertices: impostors fill the box.
     proto->radius = fmaxf(glm_vec3_norm(proto->half), 1e-6f);
+}
 
-    uint32_t cheapest = 0; // kept level
-    for (uint32_t l = 0; l < s->level_count; l++) {
-        prom_representation rep = {
-            .kind = PROM_REP_MESH, .texture = PROM_NONE, .level = l, .error = s->errors[l]};
-        prom_admission admission = shape->layer == PROM_LAYER_BACKDROP ? PROM_ADMIT_UNMEASURED
-                                   : l == 0                            ? PROM_ADMIT_TRUTH
-                                                                       : PROM_ADMIT_MEASURED;
-        prom_status status =
-            prom_build_add_rep(b, p, &s->levels[l], &rep, admission, &s->mesh_ids[l], error);
-        if (status) return status;
-        if (s->mesh_ids[l] == PROM_NONE) continue;
-        s->max_size_px[l] = b->reps.data[b->reps.count - 1].max_size_px;
-        cheapest = l;
+static prom_status begin(prom_subject *s, uint32_t p, prom_error *error)
+{
+    prom_build_state *b = s->build;
+    prom_shape_build *shape = &b->shapes[p];
+    bool backdrop = b->objects.shapes.data[p].layer == PROM_LAYER_BACKDROP;
+    fill_prototype(b, p);
+    s->prototype = p;
+    s->key = shape->leaf_key = prom_key_of_leaf(b, p);
+    for (uint32_t l = 0; l < shape->level_count; l++) {
+        prom_level *level = &shape->levels[l];
+        prom_representation rep = {.kind = PROM_REP_MESH,
+                                   .texture = PROM_NONE,
+                                   .flags = level->artist ? PROM_REP_ARTIST : 0,
+                                   .level = l,
+                                   .error = level->error,
+                                   .switch_distance = level->switch_distance};
+        prom_subject_add(s, &level->mesh, &rep,
+                         backdrop ? PROM_ADMIT_UNMEASURED
+                         : l == 0 ? PROM_ADMIT_TRUTH
+                                  : PROM_ADMIT_MEASURED);
+        // Clusters are measured against these.
+        level->device_id = prom_renderer_add_mesh(b->renderer, &level->mesh);
+        if (level->device_id == PROM_NONE) return prom_build_device_full("meshes", error);
     }
-    if (shape->layer != PROM_LAYER_OBJECT) return PROM_OK;
-    // Where a level costs as little, a box would only show less.
-    const prom_mesh *last = &s->levels[cheapest];
-    if (last->index_count / 3 <= MIN_TRIANGLES && last->submesh_count == 1) return PROM_OK;
-    prom_draw_item item = prom_build_item_around(s->mesh_ids[0], proto->center);
+    return PROM_OK;
+}
+
+// Where a level costs as little, a box would only show less.
+static bool as_cheap_as_a_box(const prom_mesh *mesh)
+{
+    return mesh->index_count / 3 <= PROM_LEVEL_MIN_TRIANGLES && mesh->submesh_count == 1;
+}
+
+static prom_status add_boxes(prom_subject *s, uint32_t p, prom_error *error)
+{
+    prom_draw_item item = prom_item_around(s->build->shapes[p].levels[0].device_id,
+                                           s->build->prototypes[p].center);
+    return prom_subject_add_boxes(s, &item, 1, false, error);
+}
+
+static prom_status draw(prom_subject *s, uint32_t p, prom_error *error)
+{
+    prom_build_state *b = s->build;
+    const prom_shape_build *shape = &b->shapes[p];
+    prom_layer layer = b->objects.shapes.data[p].layer;
+    if (layer == PROM_LAYER_BACKDROP) return PROM_OK;
+    prom_draw_item item = prom_item_around(shape->levels[0].device_id, b->prototypes[p].center);
     prom_baker_set_subject(b->baker, &item, 1);
-    return prom_build_add_boxes(b, p, proto->center, proto->half, proto->radius, false,
-                                b->boxed[p], error);
+    prom_subject_take_truth(s, false);
+    for (uint32_t l = 1; l < shape->level_count; l++) {
+        prom_status status = prom_subject_take_views(s, l, shape->levels[l].device_id, error);
+        if (status) return status;
+    }
+    if (layer != PROM_LAYER_OBJECT ||
+        as_cheap_as_a_box(&shape->levels[shape->level_count - 1].mesh))
+        return PROM_OK;
+    return add_boxes(s, p, error);
+}
+
+// The level that was to be as cheap as a box may have turned out to be of no use.
+static prom_status amend(prom_subject *s, uint32_t p, prom_error *error)
+{
+    if (s->build->objects.shapes.data[p].layer != PROM_LAYER_OBJECT) return PROM_OK;
+    if (s->first_box < s->count) return PROM_OK;
+    uint32_t cheapest = s->count - 1;
+    while (!s->candidates[cheapest].kept) cheapest--; // the object itself is
+    if (as_cheap_as_a_box(s->candidates[cheapest].mesh)) return PROM_OK;
+    return add_boxes(s, p, error);
+}
+
+static void settled(prom_subject *s, uint32_t p)
+{
+    prom_shape_build *shape = &s->build->shapes[p];
+    for (uint32_t l = 0; l < shape->level_count; l++) {
+        prom_level *level = &shape->levels[l];
+        level->kept = s->candidates[l].kept;
+        level->max_size_px = s->candidates[l].rep.max_size_px;
+        prom_mesh_finish(&level->mesh); // it is in the container and on the device
+        level->mesh = (prom_mesh){0};
+    }
 }
 
 typedef struct candidate {
@@ -193,7 +134,7 @@ static void plan_boxes(prom_build_state *b)
     b->boxed = prom_calloc(shape_count + cluster_count, sizeof *b->boxed);
     for (size_t i = 0; i < shape_count; i++) {
         const prom_shape *s = &b->objects.shapes.data[i];
-        uint32_t triangles = b->shapes[i].levels[0].index_count / 3;
+        uint32_t triangles = b->shapes[i].levels[0].mesh.index_count / 3;
         if (s->layer == PROM_LAYER_OBJECT && triangles >= BOXED_TRIANGLES)
             prom_array_push(&list, (candidate){(double)triangles * s->instances / shape_bytes,
                                                (uint32_t)i});
@@ -224,15 +165,14 @@ static void plan_boxes(prom_build_state *b)
 
 prom_status prom_stage_leaves(prom_build_state *b, prom_error *error)
 {
+    static const prom_subject_class leaf = {PROM_UNIT_LEAF, begin, draw, amend, settled};
+    uint32_t count = (uint32_t)b->objects.shapes.count;
     plan_boxes(b);
     b->measure = prom_measure_create(b->mean_luminance);
+    b->pool = prom_pool_create();
     prom_progress progress;
-    prom_progress_begin(&progress, "leaves", b->objects.shapes.count);
-    for (uint32_t p = 0; p < b->objects.shapes.count; p++) {
-        prom_status status = add_leaf(b, p, error);
-        if (status) return status;
-        prom_progress_step(&progress, 1);
-    }
-    prom_progress_end(&progress);
-    return PROM_OK;
+    prom_progress_begin(&progress, "leaves", count);
+    prom_status status = prom_subjects_run(b, &leaf, NULL, count, &progress, error);
+    if (!status) prom_progress_end(&progress);
+    return status;
 }

@@ -134,54 +134,59 @@ static void bad_input_leaves_nothing(void **state)
 }
 
 // Synthetic views: a disc in every direction.
-static void draw_disc(prom_views *views, float radius_px, float luminance)
+static void draw_disc(prom_views *views, float radius_px, uint8_t grey)
 {
     for (uint32_t d = 0; d < PROM_DIRS; d++)
-        for (int y = 0; y < PROM_VIEW_PX; y++)
-            for (int x = 0; x < PROM_VIEW_PX; x++) {
+        for (uint32_t y = 0; y < PROM_VIEW_PX; y++)
+            for (uint32_t x = 0; x < PROM_VIEW_PX; x++) {
                 float dx = (float)x - 63.5f, dy = (float)y - 63.5f;
-                size_t i = (size_t)y * PROM_VIEW_PX + (size_t)x;
+                size_t i = prom_view_start(d) + (size_t)y * PROM_ATLAS_PX + x;
                 bool in = dx * dx + dy * dy < radius_px * radius_px;
-                views->coverage[d][i] = in ? 1.0f : 0.0f;
-                views->luminance[d][i] = in ? luminance : 0.0f;
-                if (views->ids) views->ids[d][i] = in ? (x < 64 ? 0 : 1) : PROM_NONE;
+                uint8_t pixel[4] = {grey, grey, grey, 255};
+                memset(views->rgba[i], 0, 4);
+                if (in) memcpy(views->rgba[i], pixel, 4);
+                if (views->ids) views->ids[i] = in ? (x < 64 ? 0 : 1) : PROM_NONE;
             }
 }
 
 static void accuracy_is_one_for_equal_and_falls_with_difference(void **state)
 {
     (void)state;
-    prom_views truth, other;
+    prom_views truth, views[3];
+    static prom_comparison result[3];
+    prom_comparison *others[3];
+    static const struct {
+        float radius_px;
+        uint8_t grey;
+    } discs[3] = {{40, 188}, {38, 178}, {20, 90}};
     prom_views_init(&truth, true);
-    prom_views_init(&other, false);
+    draw_disc(&truth, 40, 188);
+    for (int i = 0; i < 3; i++) {
+        prom_views_init(&views[i], false);
+        draw_disc(&views[i], discs[i].radius_px, discs[i].grey);
+        result[i].views = &views[i];
+        others[i] = &result[i];
+    }
     prom_measure *m = prom_measure_create(0.2f);
-    uint16_t coverage[PROM_DIRS];
-    static uint8_t equal[PROM_DIRS][PROM_SIZES], near[PROM_DIRS][PROM_SIZES],
-        far[PROM_DIRS][PROM_SIZES];
-    draw_disc(&truth, 40, 0.5f);
-    prom_measure_set_truth(m, &truth, coverage);
-    draw_disc(&other, 40, 0.5f);
-    prom_measure_compare(m, &other, equal);
-    draw_disc(&other, 38, 0.45f);
-    prom_measure_compare(m, &other, near);
-    draw_disc(&other, 20, 0.1f);
-    prom_measure_compare(m, &other, far);
+    uint16_t coverage[PROM_DIRS], shares[2][PROM_DIRS];
     for (uint32_t d = 0; d < PROM_DIRS; d++) {
+        prom_measure_direction(m, 0, d, &truth, &coverage[d], others, 3);
+        prom_measure_shares(&truth, d, 2, shares);
         double share = 40.0 * 40.0 / (64.0 * 64.0);
         assert_true(fabs(coverage[d] / 65535.0 - share) < 0.01);
         for (uint32_t s = 0; s < PROM_SIZES; s++) {
-            assert_int_equal(equal[d][s], 255);
-            assert_true(near[d][s] < 255);
-            assert_true(far[d][s] < near[d][s]);
+            assert_int_equal(result[0].accuracy[d][s], 255);
+            assert_true(result[1].accuracy[d][s] < 255);
+            assert_true(result[2].accuracy[d][s] < result[1].accuracy[d][s]);
         }
+        assert_int_equal(result[0].gaps[d], 0);
+        assert_true(result[2].gaps[d] > 100);
+        assert_in_range(shares[0][d] + shares[1][d], 65534, 65536);
+        assert_in_range(shares[0][d], 32700, 32835);
     }
-    uint16_t shares[2][PROM_DIRS];
-    prom_measure_shares(&truth, 2, shares);
-    assert_in_range(shares[0][7] + shares[1][7], 65534, 65536);
-    assert_in_range(shares[0][7], 32700, 32835);
     prom_measure_destroy(m);
     prom_views_finish(&truth);
-    prom_views_finish(&other);
+    for (int i = 0; i < 3; i++) prom_views_finish(&views[i]);
 }
 
 int main(void)

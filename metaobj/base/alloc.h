@@ -8,7 +8,8 @@
 #include <stddef.h>
 #include <string.h>
 
-// count x size bytes, aligned for every type; aborts on overflow. Zero bytes give a valid pointer.
+// count x size bytes, aligned for every type; aborts on overflow. Zero bytes give a valid
+// pointer.
 void *prom_alloc(size_t count, size_t size);
 void *prom_calloc(size_t count, size_t size);
 void *prom_realloc(void *pointer, size_t count, size_t size);
@@ -20,31 +21,31 @@ char *prom_format(const char *format, ...) __attribute__((format(printf, 1, 2)))
 // An arena hands out memory that is freed all at once.
 typedef struct prom_arena {
     struct prom_arena_block *blocks; // newest first
-} prom_arena; // {0} is an empty arena
+} prom_arena;                        // {0} is an empty arena
 
 void *prom_arena_alloc(prom_arena *arena, size_t count, size_t size); // zeroed, 16-byte aligned
 char *prom_arena_strdup(prom_arena *arena, const char *text);
 void prom_arena_finish(prom_arena *arena);
 
 // A growable array: `PROM_ARRAY(int) a = {0}; prom_array_push(&a, 1); prom_array_finish(&a);`
-#define PROM_ARRAY(type) \
-    struct { \
-        type *data; \
-        size_t count, capacity; \
+#define PROM_ARRAY(type)                                                                       \
+    struct {                                                                                   \
+        type *data;                                                                            \
+        size_t count, capacity;                                                                \
     }
 
 void *prom_array_grow_(void *data, size_t *capacity, size_t needed, size_t size);
 
-#define prom_array_reserve(a, n) \
-    ((a)->data = (n) > (a)->capacity \
-                     ? prom_array_grow_((a)->data, &(a)->capacity, (n), sizeof *(a)->data) \
+#define prom_array_reserve(a, n)                                                               \
+    ((a)->data = (n) > (a)->capacity                                                           \
+                     ? prom_array_grow_((a)->data, &(a)->capacity, (n), sizeof *(a)->data)     \
                      : (a)->data)
-#define prom_array_push(a, ...) \
+#define prom_array_push(a, ...)                                                                \
     (prom_array_reserve((a), (a)->count + 1), (void)((a)->data[(a)->count++] = (__VA_ARGS__)))
 // Makes room for n more, zeroed, and gives the first one's address.
-#define prom_array_extend(a, n) \
-    (prom_array_reserve((a), (a)->count + (n)), (a)->count += (n), \
-     memset((a)->data + (a)->count - (n), 0, (n) * sizeof *(a)->data), \
+#define prom_array_extend(a, n)                                                                \
+    (prom_array_reserve((a), (a)->count + (n)), (a)->count += (n),                             \
+     memset((a)->data + (a)->count - (n), 0, (n) * sizeof *(a)->data),                         \
      (a)->data + (a)->count - (n))
 #define prom_array_finish(a) (prom_free((a)->data), (void)memset((a), 0, sizeof *(a)))
 

@@ -13,7 +13,7 @@ typedef struct prom_box {
     float min[3], max[3];
 } prom_box;
 
-#define PROM_BOX_EMPTY \
+#define PROM_BOX_EMPTY                                                                         \
     ((prom_box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}})
 
 void prom_box_add_point(prom_box *box, const float point[3]);
@@ -43,7 +43,8 @@ void prom_basis_apply(const float basis[9], const float local[3], float out[3]);
 void prom_basis_apply_transposed(const float basis[9], const float v[3], float out[3]);
 // Half extents of the axis-aligned box of a turned box: |basis| * half.
 void prom_basis_apply_half(const float basis[9], const float half[3], float out[3]);
-// Determinant (negative: mirrored) and the largest column length (the scale of errors and radii).
+// Determinant (negative: mirrored) and the largest column length (the scale of errors and
+// radii).
 float prom_basis_determinant(const float basis[9]);
 float prom_basis_scale(const float basis[9]);
 // out = inverse of basis; false when it is singular.

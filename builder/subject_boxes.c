@@ -1,8 +1,9 @@
 // The two box impostors: six colours, or six pictures, from captures of the six sides.
-#include "builder/build.h"
+#include "builder/subject.h"
 
 #define CAPTURE_PX (2 * PROM_FACE_PX) // taken at twice the stored size and averaged
 _Static_assert(CAPTURE_PX <= PROM_VIEW_PX, "a capture must fit a view of the baker");
+#define CAPTURE_BYTES ((size_t)CAPTURE_PX * CAPTURE_PX * 4 * 6)
 
 // Alpha-weighted linear means of the sides; an empty side gets the mean of all.
 static void average_faces(const uint8_t *rgba, uint8_t colors[6][4])
@@ -30,11 +31,10 @@ static void average_faces(const uint8_t *rgba, uint8_t colors[6][4])
 static void make_texture(prom_texture_kind kind, const uint8_t *color, const uint8_t *normals,
                          prom_texture *out)
 {
-    const size_t bytes = (size_t)CAPTURE_PX * CAPTURE_PX * 4 * 6;
     prom_texture big;
     prom_texture_init(&big, kind, CAPTURE_PX, CAPTURE_PX);
-    memcpy(big.pixels, color, bytes);
-    if (normals) memcpy(big.pixels + bytes, normals, bytes);
+    memcpy(big.pixels, color, CAPTURE_BYTES);
+    if (normals) memcpy(big.pixels + CAPTURE_BYTES, normals, CAPTURE_BYTES);
     prom_texture_dilate(&big, 8);
     prom_texture_make_mips(&big, 0.5f);
     prom_texture_init(out, kind, PROM_FACE_PX, PROM_FACE_PX);
@@ -42,52 +42,51 @@ static void make_texture(prom_texture_kind kind, const uint8_t *color, const uin
     prom_texture_finish(&big);
 }
 
-static prom_status add_box(prom_build_state *b, uint32_t p, const prom_mesh *mesh,
-                           uint32_t kind, uint32_t texture, uint32_t flags, float radius,
-                           prom_error *error)
+static prom_status add_box(prom_subject *s, uint32_t kind, const uint8_t (*colors)[4],
+                           const float half[3], uint32_t flags, prom_error *error)
 {
-    prom_representation rep = {
-        .kind = kind, .texture = texture, .flags = flags, .error = radius};
-    return prom_build_add_rep(b, p, mesh, &rep, PROM_ADMIT_MEASURED, NULL, error);
+    const prom_prototype *proto = &s->build->prototypes[s->prototype];
+    prom_representation rep = {.kind = kind,
+                               .texture = PROM_NONE,
+                               .flags = flags,
+                               .error = proto->radius,
+                               .switch_distance = INFINITY};
+    uint32_t i = s->count;
+    prom_mesh *mesh = &s->box_meshes[i - s->first_box];
+    prom_mesh_init_box(mesh, proto->center, half, colors);
+    prom_subject_add(s, mesh, &rep, PROM_ADMIT_MEASURED)->pictured = !colors;
+    return prom_subject_take_views(s, i, PROM_NONE, error);
 }
 
-prom_status prom_build_add_boxes(prom_build_state *b, uint32_t p, const float center[3],
-                                 const float half[3], float radius, bool lit, bool textured,
-                                 prom_error *error)
+prom_status prom_subject_add_boxes(prom_subject *s, const prom_draw_item *items, size_t count,
+                                   bool lit, prom_error *error)
 {
-    const size_t bytes = (size_t)CAPTURE_PX * CAPTURE_PX * 4 * 6;
-    uint8_t *color = prom_alloc(bytes, 1), *normals = NULL;
+    prom_build_state *b = s->build;
+    const prom_prototype *proto = &b->prototypes[s->prototype];
+    bool textured = b->boxed[s->prototype];
+    uint32_t flags = lit ? PROM_REP_UNLIT : 0;
     float thick[3]; // a flat object's box keeps a little depth
-    for (int a = 0; a < 3; a++) thick[a] = fmaxf(half[a], 1e-3f * radius);
+    for (int a = 0; a < 3; a++) thick[a] = fmaxf(proto->half[a], 1e-3f * proto->radius);
+    uint8_t *color = prom_alloc(CAPTURE_BYTES, 1), *normals = NULL;
+    prom_baker_set_subject(b->baker, items, count);
     prom_baker_take_faces(b->baker, thick, lit ? PROM_OUTPUT_LIT : PROM_OUTPUT_ALBEDO,
                           CAPTURE_PX, color);
     if (textured && !lit) {
-        normals = prom_alloc(bytes, 1);
+        normals = prom_alloc(CAPTURE_BYTES, 1);
         prom_baker_take_faces(b->baker, thick, PROM_OUTPUT_NORMAL, CAPTURE_PX, normals);
     }
-    uint32_t flags = lit ? PROM_REP_UNLIT : 0;
+    s->first_box = s->count;
     prom_status status = PROM_OK;
-    prom_mesh mesh;
     if (textured) {
-        prom_texture texture;
-        uint32_t texture_id;
         make_texture(lit ? PROM_TEXTURE_IMPOSTOR_LIT : PROM_TEXTURE_IMPOSTOR_ALBEDO, color,
-                     normals, &texture);
-        status = prom_build_add_texture(b, &texture, &texture_id, error);
-        prom_texture_finish(&texture);
-        if (!status) {
-            prom_mesh_init_box(&mesh, center, thick, NULL);
-            status =
-                add_box(b, p, &mesh, PROM_REP_TEXTURED_BOX, texture_id, flags, radius, error);
-            prom_mesh_finish(&mesh);
-        }
+                     normals, &s->picture);
+        status = add_box(s, PROM_REP_TEXTURED_BOX, NULL, thick, flags, error);
     }
     if (!status) {
         uint8_t colors[6][4];
         average_faces(color, colors);
-        prom_mesh_init_box(&mesh, center, thick, colors);
-        status = add_box(b, p, &mesh, PROM_REP_AVERAGE_BOX, PROM_NONE, flags, radius, error);
-        prom_mesh_finish(&mesh);
+        status =
+            add_box(s, PROM_REP_AVERAGE_BOX, (const uint8_t(*)[4])colors, thick, flags, error);
     }
     prom_free(color);
     prom_free(normals);

@@ -1,0 +1,244 @@
+#include "builder/store.h"
+
+#include "metaobj/base/hash.h"
+#include "metaobj/base/log.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <sqlite3.h>
+#include <stdio.h>
+#include <unistd.h>
+#include <zstd.h>
+
+#define FORMAT 1
+#define APPLICATION_ID 0x50524f57 // "PROW"
+#define ZSTD_FAST 1
+// SQLite's limit for a blob is 10^9 bytes. A unit beyond it is done again each time.
+#define UNIT_BYTES_MAX ((size_t)900000000)
+
+struct prom_store {
+    sqlite3 *db;
+    char *path;
+    prom_unit_kind redo;
+    pthread_mutex_t lock;
+    sqlite3_stmt *get, *put, *touch;
+};
+
+char *prom_store_path(const char *model_path)
+{
+    return prom_format("%s.work", model_path);
+}
+
+static prom_status fail(prom_store *s, prom_error *error)
+{
+    int rc = s->db ? sqlite3_errcode(s->db) : SQLITE_NOMEM;
+    const char *why = rc == SQLITE_FULL ? "the disk is full"
+                      : s->db           ? sqlite3_errmsg(s->db)
+                                        : "";
+    return prom_fail(error, PROM_ERR_OUTPUT,
+                     "cannot write %s: %s; make room and start again, "
+                     "the build will go on",
+                     s->path, why);
+}
+
+static void close_database(prom_store *s)
+{
+    sqlite3_finalize(s->get);
+    sqlite3_finalize(s->put);
+    sqlite3_finalize(s->touch);
+    sqlite3_close(s->db);
+    s->db = NULL;
+    s->get = s->put = s->touch = NULL;
+}
+
+// Losing the last units with the power is no harm, so nothing is synced; the rollback journal
+// covers a killed process.
+static const char schema[] =
+    "PRAGMA page_size=16384; PRAGMA auto_vacuum=FULL; PRAGMA journal_mode=TRUNCATE;"
+    "PRAGMA synchronous=OFF; PRAGMA locking_mode=EXCLUSIVE;"
+    "PRAGMA temp_store=MEMORY;"
+    "CREATE TABLE IF NOT EXISTS unit(id INTEGER PRIMARY KEY, kind INTEGER NOT NULL,"
+    " key INTEGER NOT NULL, bytes INTEGER NOT NULL, checksum INTEGER NOT NULL,"
+    " data BLOB NOT NULL, UNIQUE(kind, key)) STRICT;"
+    "CREATE TEMP TABLE used(kind INTEGER, key INTEGER, PRIMARY KEY(kind, key)) WITHOUT ROWID;";
+
+static int64_t pragma_value(sqlite3 *db, const char *sql)
+{
+    sqlite3_stmt *statement;
+    int64_t value = -1;
+    if (sqlite3_prepare_v2(db, sql, -1, &statement, NULL) == SQLITE_OK &&
+        sqlite3_step(statement) == SQLITE_ROW)
+        value = sqlite3_column_int64(statement, 0);
+    sqlite3_finalize(statement);
+    return value;
+}
+
+// An empty file, or a store of this format; anything else is not touched by SQL.
+static bool is_ours(sqlite3 *db)
+{
+    int64_t id = pragma_value(db, "PRAGMA application_id");
+    if (id == 0 && pragma_value(db, "SELECT count(*) FROM sqlite_schema") == 0) return true;
+    return id == APPLICATION_ID && pragma_value(db, "PRAGMA user_version") == FORMAT;
+}
+
+static bool open_database(prom_store *s)
+{
+    char marks[96];
+    snprintf(marks, sizeof marks, "PRAGMA application_id=%d; PRAGMA user_version=%d;",
+             APPLICATION_ID, FORMAT);
+    char *name = s->path[0] == '/' ? prom_strdup(s->path) : prom_format("./%s", s->path);
+    int rc = sqlite3_open_v2(
+        name, &s->db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX, NULL);
+    prom_free(name);
+    if (rc != SQLITE_OK) return false;
+    sqlite3_db_config(s->db, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
+    sqlite3_db_config(s->db, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
+    return is_ours(s->db) && sqlite3_exec(s->db, schema, NULL, NULL, NULL) == SQLITE_OK &&
+           sqlite3_exec(s->db, marks, NULL, NULL, NULL) == SQLITE_OK &&
+           sqlite3_prepare_v2(s->db,
+                              "SELECT bytes, checksum, data FROM unit"
+                              " WHERE kind=? AND key=?",
+                              -1, &s->get, NULL) == SQLITE_OK &&
+           sqlite3_prepare_v2(s->db, "INSERT OR IGNORE INTO used VALUES(?,?)", -1, &s->touch,
+                              NULL) == SQLITE_OK &&
+           sqlite3_prepare_v2(s->db, "INSERT OR REPLACE INTO unit VALUES(NULL,?,?,?,?,?)", -1,
+                              &s->put, NULL) == SQLITE_OK;
+}
+
+static void unlink_files(const char *path)
+{
+    char *journal = prom_format("%s-journal", path);
+    unlink(path);
+    unlink(journal);
+    prom_free(journal);
+}
+
+prom_store *prom_store_open(const char *model_path, prom_unit_kind redo, prom_error *error)
+{
+    prom_store *s = prom_calloc(1, sizeof *s);
+    s->path = prom_store_path(model_path);
+    s->redo = redo;
+    pthread_mutex_init(&s->lock, NULL);
+    if (open_database(s)) return s;
+    int rc = s->db ? sqlite3_errcode(s->db) : SQLITE_NOMEM;
+    // Damaged, or of another format: what it held is lost, which costs time only.
+    bool replaceable = rc == SQLITE_OK || rc == SQLITE_CORRUPT || rc == SQLITE_NOTADB ||
+                       rc == SQLITE_ERROR || rc == SQLITE_ROW || rc == SQLITE_DONE;
+    if (replaceable) {
+        prom_log(PROM_LOG_WARNING, "%s: cannot be used, all is done again", s->path);
+        close_database(s);
+        unlink_files(s->path);
+        if (open_database(s)) return s;
+    }
+    fail(s, error);
+    prom_store_close(s);
+    return NULL;
+}
+
+void prom_store_close(prom_store *store)
+{
+    if (!store) return;
+    close_database(store);
+    pthread_mutex_destroy(&store->lock);
+    prom_free(store->path);
+    prom_free(store);
+}
+
+prom_status prom_store_delete(const char *model_path, prom_error *error)
+{
+    char *path = prom_store_path(model_path);
+    prom_status status = PROM_OK;
+    if (unlink(path) && errno != ENOENT)
+        status =
+            prom_fail(error, PROM_ERR_OUTPUT, "cannot delete %s: %s", path, strerror(errno));
+    else
+        unlink_files(path);
+    prom_free(path);
+    return status;
+}
+
+prom_status prom_store_prune(prom_store *store, prom_error *error)
+{
+    const char *sql = "DELETE FROM unit WHERE NOT EXISTS (SELECT 1 FROM used"
+                      " WHERE used.kind=unit.kind AND used.key=unit.key)";
+    return sqlite3_exec(store->db, sql, NULL, NULL, NULL) == SQLITE_OK ? PROM_OK
+                                                                       : fail(store, error);
+}
+
+static void bind_key(sqlite3_stmt *statement, prom_unit_kind kind, uint64_t key)
+{
+    sqlite3_bind_int(statement, 1, kind);
+    sqlite3_bind_int64(statement, 2, (int64_t)key);
+}
+
+static void note_use(prom_store *s, prom_unit_kind kind, uint64_t key)
+{
+    bind_key(s->touch, kind, key);
+    sqlite3_step(s->touch);
+    sqlite3_reset(s->touch);
+}
+
+// The compressed bytes of a unit, copied so that the lock can be given back; false if there is
+// none or its checksum is wrong.
+static bool fetch(prom_store *s, prom_unit_kind kind, uint64_t key, prom_pack *packed,
+                  size_t *bytes)
+{
+    bind_key(s->get, kind, key);
+    bool good = sqlite3_step(s->get) == SQLITE_ROW;
+    if (good) {
+        int64_t claimed = sqlite3_column_int64(s->get, 0);
+        const void *data = sqlite3_column_blob(s->get, 2);
+        size_t size = (size_t)sqlite3_column_bytes(s->get, 2);
+        good = data && claimed > 0 && (uint64_t)claimed <= UNIT_BYTES_MAX &&
+               (int64_t)prom_hash(data, size, (uint64_t)claimed) ==
+                   sqlite3_column_int64(s->get, 1);
+        if (good) prom_pack_bytes(packed, data, size);
+        *bytes = (size_t)claimed;
+    }
+    sqlite3_reset(s->get);
+    if (good) note_use(s, kind, key);
+    return good;
+}
+
+bool prom_store_get(prom_store *store, prom_unit_kind kind, uint64_t key, prom_pack *pack)
+{
+    prom_pack packed = {0};
+    size_t bytes = 0;
+    if (kind >= store->redo) return false;
+    pthread_mutex_lock(&store->lock);
+    bool good = fetch(store, kind, key, &packed, &bytes);
+    pthread_mutex_unlock(&store->lock);
+    if (good) {
+        pack->count = 0;
+        prom_array_reserve(pack, bytes);
+        good = ZSTD_decompress(pack->data, bytes, packed.data, packed.count) == bytes;
+        pack->count = bytes;
+    }
+    prom_array_finish(&packed);
+    return good;
+}
+
+prom_status prom_store_put(prom_store *store, prom_unit_kind kind, uint64_t key,
+                           const prom_pack *pack, prom_error *error)
+{
+    if (!pack->count || pack->count > UNIT_BYTES_MAX) return PROM_OK;
+    prom_pack packed = {0};
+    prom_array_reserve(&packed, ZSTD_compressBound(pack->count));
+    size_t bytes =
+        ZSTD_compress(packed.data, packed.capacity, pack->data, pack->count, ZSTD_FAST);
+    prom_status status = PROM_OK;
+    if (!ZSTD_isError(bytes)) {
+        pthread_mutex_lock(&store->lock);
+        bind_key(store->put, kind, key);
+        sqlite3_bind_int64(store->put, 3, (int64_t)pack->count);
+        sqlite3_bind_int64(store->put, 4, (int64_t)prom_hash(packed.data, bytes, pack->count));
+        sqlite3_bind_blob64(store->put, 5, packed.data, bytes, SQLITE_STATIC);
+        if (sqlite3_step(store->put) != SQLITE_DONE) status = fail(store, error);
+        sqlite3_reset(store->put);
+        sqlite3_clear_bindings(store->put);
+        if (!status) note_use(store, kind, key);
+        pthread_mutex_unlock(&store->lock);
+    }
+    prom_array_finish(&packed);
+    return status;
+}

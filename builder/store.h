@@ -1,0 +1,44 @@
+// The store of a build: what its units of work have made, by the hash of their inputs, in the
+// file X.prom.work beside the model X.prom.
+//
+// A build that is cut off goes on from it, and a build with another setting or a changed scene
+// takes from it what is still right. Deleting the file costs only time. A unit is kept in a
+// transaction of its own; the process may be killed at any moment. Each entry has a checksum,
+// and what cannot be read counts as not there.
+#ifndef PROM_BUILDER_STORE_H
+#define PROM_BUILDER_STORE_H
+
+#include "builder/pack.h"
+#include "metaobj/base/status.h"
+
+typedef struct prom_store prom_store;
+
+// The kinds of units, in the order of the build.
+typedef enum prom_unit_kind {
+    PROM_UNIT_LEVELS,  // meshes of a shape
+    PROM_UNIT_LEAF,    // representations of a shape's prototype
+    PROM_UNIT_MERGE,   // merged meshes of a cluster
+    PROM_UNIT_CLUSTER, // representations of a cluster's prototype
+    PROM_UNIT_COUNT
+} prom_unit_kind;
+
+// Opens the store of the model at `model_path`, or starts one; a damaged one is replaced.
+// Units of kinds from `redo` on are not given back (PROM_UNIT_COUNT: all are). The caller holds
+// the lock on the model's .part. NULL with *error if it cannot be written.
+prom_store *prom_store_open(const char *model_path, prom_unit_kind redo, prom_error *error);
+// Keeps the file. NULL is allowed.
+void prom_store_close(prom_store *store);
+// Drops the units that this build has neither taken nor put.
+prom_status prom_store_prune(prom_store *store, prom_error *error);
+// The file of the model's store; free it.
+char *prom_store_path(const char *model_path);
+// Deletes the model's store, if there is one.
+prom_status prom_store_delete(const char *model_path, prom_error *error);
+
+// The next two may be called from several threads.
+// False if there is no such unit; else its bytes are in *pack.
+bool prom_store_get(prom_store *store, prom_unit_kind kind, uint64_t key, prom_pack *pack);
+prom_status prom_store_put(prom_store *store, prom_unit_kind kind, uint64_t key,
+                           const prom_pack *pack, prom_error *error);
+
+#endif

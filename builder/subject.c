@@ -1,0 +1,311 @@
+#include "builder/subject.h"
+
+#include "benefit/accuracy.h"
+#include "metaobj/base/log.h"
+
+#include <assert.h>
+
+// A mesh with gaps may be shown up to the size at which they cover this many pixels: few enough
+// that all of a frame's gaps stay under half a percent of it (by taste, then seen on the
+// scenes).
+#define GAPS_SHOWN_PX 64.0f
+// One whose gaps allow less than this is of no use.
+#define LEAST_SIZE_PX 16.0f
+
+// ---- drawing
+
+prom_draw_item prom_item_around(uint32_t device_mesh, const float center[3])
+{
+    return (prom_draw_item){.mesh = device_mesh,
+                            .texture = PROM_NONE,
+                            .origin = {-center[0], -center[1], -center[2]},
+                            .basis = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+}
+
+prom_candidate *prom_subject_add(prom_subject *s, const prom_mesh *mesh,
+                                 const prom_representation *rep, prom_admission admission)
+{
+    assert(s->count < PROM_CANDIDATES_MAX);
+    prom_candidate *c = &s->candidates[s->count++];
+    prom_views views = c->views;
+    *c = (prom_candidate){.mesh = mesh, .admission = admission, .views = views, .rep = *rep};
+    return c;
+}
+
+static float radius_of(const prom_subject *s)
+{
+    return s->build->prototypes[s->prototype].radius;
+}
+
+void prom_subject_take_truth(prom_subject *s, bool with_ids)
+{
+    if (!s->truth.rgba || (with_ids && !s->truth.ids)) {
+        prom_views_finish(&s->truth);
+        prom_views_init(&s->truth, with_ids);
+    }
+    prom_views wanted = s->truth;
+    if (!with_ids) wanted.ids = NULL;
+    prom_baker_take_views(s->build->baker, radius_of(s), &wanted);
+    s->loop.count = PROM_DIRS;
+}
+
+prom_status prom_subject_take_views(prom_subject *s, uint32_t i, uint32_t device_id,
+                                    prom_error *error)
+{
+    prom_build_state *b = s->build;
+    prom_candidate *c = &s->candidates[i];
+    uint32_t meshes = prom_renderer_mesh_count(b->renderer);
+    uint32_t textures = prom_renderer_texture_count(b->renderer);
+    if (device_id == PROM_NONE) device_id = prom_renderer_add_mesh(b->renderer, c->mesh);
+    if (device_id == PROM_NONE) return prom_build_device_full("meshes", error);
+    prom_draw_item item = prom_item_around(device_id, b->prototypes[s->prototype].center);
+    item.flags = c->rep.flags;
+    if (c->pictured) {
+        item.texture = prom_renderer_add_texture(b->renderer, &s->picture);
+        if (item.texture == PROM_NONE) return prom_build_device_full("textures", error);
+    }
+    if (!c->views.rgba) prom_views_init(&c->views, false);
+    prom_baker_set_subject(b->baker, &item, 1);
+    prom_baker_take_views(b->baker, radius_of(s), &c->views);
+    c->result.views = &c->views;
+    s->comparisons[s->comparison_count++] = &c->result;
+    prom_renderer_truncate(b->renderer, meshes, textures);
+    return PROM_OK;
+}
+
+// ---- measuring
+
+static void measure_direction(void *user, size_t dir, unsigned thread)
+{
+    prom_subject *s = user;
+    prom_measure_direction(s->build->measure, thread, (uint32_t)dir, &s->truth,
+                           &s->coverage[dir], s->comparisons, s->comparison_count);
+    if (s->child_count)
+        prom_measure_shares(&s->truth, (uint32_t)dir, s->child_count, s->shares);
+}
+
+static void start_measuring(prom_subject *s)
+{
+    s->loop.body = measure_direction;
+    s->loop.user = s;
+    prom_pool_start(s->build->pool, &s->loop);
+}
+
+// ---- settling: what the measurements make of the candidates
+
+// The shading of most of a mesh's triangles.
+static uint32_t main_shading(const prom_build_state *b, const prom_mesh *mesh)
+{
+    uint64_t triangles[PROM_SHADE_COUNT] = {0};
+    for (uint32_t s = 0; s < mesh->submesh_count; s++) {
+        uint32_t shading = PROM_SHADE_PLAIN, m = mesh->submeshes[s].material;
+        if (m != PROM_NONE) {
+            const prom_material *material = &b->source.materials.data[m];
+            if (material->alpha_mode == PROM_ALPHA_BLEND)
+                shading = PROM_SHADE_BLENDED;
+            else if (material->texture != PROM_NONE)
+                shading = material->alpha_mode == PROM_ALPHA_MASK ? PROM_SHADE_MASKED
+                                                                  : PROM_SHADE_TEXTURED;
+        }
+        triangles[shading] += mesh->submeshes[s].index_count / 3;
+    }
+    uint32_t most = 0;
+    for (uint32_t k = 1; k < PROM_SHADE_COUNT; k++)
+        if (triangles[k] > triangles[most]) most = k;
+    return most;
+}
+
+// The near-field function through the rows of a mesh.
+static float fit_near(const prom_comparison *result, float error, float radius)
+{
+    float e_px[PROM_SIZES], mean[PROM_SIZES];
+    for (uint32_t s = 0; s < PROM_SIZES; s++) {
+        uint32_t sum = 0;
+        for (uint32_t d = 0; d < PROM_DIRS; d++) sum += result->accuracy[d][s];
+        e_px[s] = error * prom_size_of_bin(s) / (2.0f * radius);
+        mean[s] = (float)sum / (255.0f * PROM_DIRS);
+    }
+    return prom_accuracy_fit_near(e_px, mean, PROM_SIZES);
+}
+
+static void settle(prom_subject *s, prom_candidate *c)
+{
+    prom_representation *rep = &c->rep;
+    bool mesh = rep->kind == PROM_REP_MESH;
+    rep->shading = c->pictured ? PROM_SHADE_IMPOSTOR : main_shading(s->build, c->mesh);
+    rep->max_size_px = mesh ? INFINITY : PROM_SIZE_MAX_PX;
+    rep->draws = c->mesh->submesh_count;
+    rep->vertices = c->mesh->vertex_count;
+    rep->triangles = c->mesh->index_count / 3;
+    c->kept = true;
+    if (c->admission != PROM_ADMIT_MEASURED) {
+        memset(c->result.accuracy, 255, sizeof c->result.accuracy);
+        return;
+    }
+    uint32_t gaps = 0;
+    for (uint32_t d = 0; d < PROM_DIRS; d++)
+        if (c->result.gaps[d] > gaps) gaps = c->result.gaps[d];
+    if (mesh && rep->error > 0) rep->near_k = fit_near(&c->result, rep->error, radius_of(s));
+    if (mesh && gaps > 0) rep->max_size_px = PROM_GAP_PX * sqrtf(GAPS_SHOWN_PX / (float)gaps);
+    c->kept = rep->max_size_px >= LEAST_SIZE_PX;
+}
+
+static prom_status measure_and_settle(prom_subject *s, const prom_subject_class *class,
+                                      uint32_t index, prom_error *error)
+{
+    prom_build_state *b = s->build;
+    prom_pool_wait(b->pool, &s->loop);
+    for (uint32_t i = 0; i < s->count; i++) settle(s, &s->candidates[i]);
+    uint32_t settled = s->count;
+    s->comparison_count = 0;
+    prom_status status = class->amend ? class->amend(s, index, error) : PROM_OK;
+    if (status || !s->comparison_count) return status;
+    start_measuring(s);
+    prom_pool_wait(b->pool, &s->loop);
+    for (uint32_t i = settled; i < s->count; i++) settle(s, &s->candidates[i]);
+    return PROM_OK;
+}
+
+// ---- writing
+
+static prom_status write_candidate(prom_subject *s, prom_candidate *c, prom_error *error)
+{
+    prom_build_state *b = s->build;
+    if (!c->kept) {
+        b->gap_meshes++;
+        return PROM_OK;
+    }
+    prom_status status = PROM_OK;
+    if (c->pictured) status = prom_build_write_texture(b, &s->picture, &c->rep.texture, error);
+    if (!status) status = prom_writer_add_mesh(b->writer, c->mesh, &c->rep.mesh, error);
+    if (status) return status;
+    prom_array_push(
+        &b->mesh_infos,
+        (prom_mesh_info){c->mesh->vertex_count, c->mesh->index_count, c->mesh->submesh_count});
+    prom_prototype *proto = &b->prototypes[s->prototype];
+    if (proto->rep_count == 0) proto->first_rep = (uint32_t)b->reps.count;
+    proto->rep_count++;
+    prom_array_push(&b->reps, c->rep);
+    struct prom_accuracy_row *row = prom_array_extend(&b->accuracy, 1);
+    memcpy(row->a, c->result.accuracy, sizeof row->a);
+    return PROM_OK;
+}
+
+static prom_status write_subject(prom_subject *s, prom_error *error)
+{
+    prom_build_state *b = s->build;
+    prom_prototype *proto = &b->prototypes[s->prototype];
+    memcpy(b->coverage[s->prototype], s->coverage, sizeof s->coverage);
+    proto->first_share = PROM_NONE;
+    if (s->child_count) {
+        proto->first_share = (uint32_t)b->shares.count;
+        proto->child_count = s->child_count;
+        struct prom_share_row *rows = prom_array_extend(&b->shares, s->child_count);
+        memcpy(rows, s->shares, s->child_count * sizeof *rows);
+    }
+    prom_status status = PROM_OK;
+    for (uint32_t i = 0; i < s->count && !status; i++)
+        status = write_candidate(s, &s->candidates[i], error);
+    return status;
+}
+
+// ---- the run
+
+static void clear(prom_subject *s)
+{
+    for (int i = 0; i < PROM_BOXES; i++) {
+        prom_mesh_finish(&s->box_meshes[i]);
+        s->box_meshes[i] = (prom_mesh){0};
+    }
+    prom_texture_finish(&s->picture);
+    s->picture = (prom_texture){0};
+    prom_free(s->shares);
+    s->shares = NULL;
+    s->count = s->comparison_count = s->child_count = 0;
+    s->first_box = PROM_CANDIDATES_MAX;
+    s->loop = (prom_loop){0};
+    s->known = false;
+    memset(s->coverage, 0, sizeof s->coverage);
+}
+
+static void finish_slot(prom_subject *s)
+{
+    clear(s);
+    prom_views_finish(&s->truth);
+    for (int i = 0; i < PROM_CANDIDATES_MAX; i++) prom_views_finish(&s->candidates[i].views);
+}
+
+static prom_status begin(prom_subject *s, const prom_subject_class *class, uint32_t index,
+                         prom_error *error)
+{
+    clear(s);
+    prom_status status = class->begin(s, index, error);
+    if (status) return status;
+    prom_pack pack = {0};
+    s->known = prom_store_get(s->build->store, class->kind, s->key, &pack) &&
+               prom_subject_unpack(s, &pack);
+    prom_array_finish(&pack);
+    if (s->known) return PROM_OK;
+    status = class->draw(s, index, error);
+    if (!status) start_measuring(s);
+    return status;
+}
+
+static prom_status end(prom_subject *s, const prom_subject_class *class, uint32_t index,
+                       prom_progress *progress, prom_error *error)
+{
+    prom_status status = PROM_OK;
+    if (s->known) {
+        prom_progress_reused(progress, 1);
+    } else {
+        status = measure_and_settle(s, class, index, error);
+        if (status) return status;
+        prom_pack pack = {0};
+        prom_subject_pack(s, &pack);
+        status = prom_store_put(s->build->store, class->kind, s->key, &pack, error);
+        prom_array_finish(&pack);
+    }
+    if (!status) status = write_subject(s, error);
+    if (!status && class->settled) class->settled(s, index);
+    prom_progress_step(progress, 1);
+    return status;
+}
+
+// One subject under way for each core and one more to draw, as memory allows. The views take
+// most of it: about twelve of a subject.
+static uint32_t slot_count(const prom_build_state *b)
+{
+    const uint64_t bytes = 12 * PROM_ATLAS_PIXELS * 4;
+    uint64_t fit = prom_build_spare_memory(b, bytes) / bytes;
+    uint32_t wanted = prom_thread_count() + 1;
+    return fit < wanted ? (uint32_t)fit : wanted;
+}
+
+prom_status prom_subjects_run(prom_build_state *b, const prom_subject_class *class,
+                              const uint32_t *index_of, uint32_t count, prom_progress *progress,
+                              prom_error *error)
+{
+    uint32_t slots = slot_count(b), begun = 0, ended = 0;
+    if (slots > count) slots = count;
+    prom_subject *subjects = prom_calloc(slots, sizeof *subjects);
+    for (uint32_t i = 0; i < slots; i++) subjects[i].build = b;
+    prom_status status = PROM_OK;
+    while (ended < count && !status) {
+        bool full = begun - ended == slots;
+        uint32_t next = full || begun == count ? ended : begun;
+        uint32_t index = index_of ? index_of[next] : next;
+        prom_subject *s = &subjects[next % slots];
+        if (next == ended && next < begun) {
+            status = end(s, class, index, progress, error);
+            ended++;
+        } else {
+            status = begin(s, class, index, error);
+            begun++;
+        }
+    }
+    // After a failure some may still be measured.
+    for (; ended < begun; ended++) prom_pool_wait(b->pool, &subjects[ended % slots].loop);
+    for (uint32_t i = 0; i < slots; i++) finish_slot(&subjects[i]);
+    prom_free(subjects);
+    return status;
+}

@@ -1,0 +1,92 @@
+// A prototype on its way into the model. Its candidates are drawn on the device, compared with
+// the true object in every view bin on all cores, and those worth keeping become its
+// representations.
+//
+// Several subjects are under way at a time: while one is compared, the next is drawn
+// (prom_subjects_run). They are settled, and written, in order.
+#ifndef PROM_BUILDER_SUBJECT_H
+#define PROM_BUILDER_SUBJECT_H
+
+#include "builder/build.h"
+#include "metaobj/base/log.h"
+
+// How a candidate comes into the model.
+typedef enum prom_admission {
+    PROM_ADMIT_UNMEASURED, // as it is: accuracy 1, no views taken
+    PROM_ADMIT_TRUTH,      // it is the object: the others are compared with it
+    PROM_ADMIT_MEASURED,   // kept if it is closed enough to be shown at some size
+} prom_admission;
+
+#define PROM_BOXES 2 // textured, average colours
+#define PROM_CANDIDATES_MAX (PROM_LEVELS_MAX + PROM_BOXES)
+
+typedef struct prom_candidate {
+    const prom_mesh *mesh; // in the frame of the prototype
+    prom_admission admission;
+    prom_views views; // kept from subject to subject
+    prom_comparison result;
+    // What it becomes; kind, flags, level, error and switch_distance are set at the start.
+    prom_representation rep;
+    bool kept, pictured; // pictured: rep.texture stands for the subject's picture
+} prom_candidate;
+
+typedef struct prom_subject {
+    prom_build_state *build;
+    uint32_t prototype;
+    uint64_t key;
+    bool known; // settled by an earlier build
+    prom_candidate candidates[PROM_CANDIDATES_MAX];
+    uint32_t count, first_box; // boxes, if there are any, stand from first_box on
+    prom_views truth;
+    uint32_t child_count; // of a cluster
+    uint16_t (*shares)[PROM_DIRS];
+    uint16_t coverage[PROM_DIRS];
+    prom_mesh box_meshes[PROM_BOXES];
+    prom_texture picture; // of the textured box
+    prom_loop loop;
+    prom_comparison *comparisons[PROM_CANDIDATES_MAX];
+    uint32_t comparison_count;
+} prom_subject;
+
+// Adds a candidate; `rep` has kind, flags, level, error, switch_distance, texture PROM_NONE.
+prom_candidate *prom_subject_add(prom_subject *s, const prom_mesh *mesh,
+                                 const prom_representation *rep, prom_admission admission);
+// Takes the truth's views of what is set in the baker.
+void prom_subject_take_truth(prom_subject *s, bool with_ids);
+// Uploads candidate i for its views, and forgets it again; device_id other than PROM_NONE: it
+// is there already.
+prom_status prom_subject_take_views(prom_subject *s, uint32_t i, uint32_t device_id,
+                                    prom_error *error);
+// Average-colour box and, if the prototype is to have one, textured box of what `items` show
+// (relative to the bounds' centre) as candidates with views. lit: bake the light in (clusters).
+prom_status prom_subject_add_boxes(prom_subject *s, const prom_draw_item *items, size_t count,
+                                   bool lit, prom_error *error);
+// A mesh in its prototype's frame, moved so that the views look at the bounds' centre.
+prom_draw_item prom_item_around(uint32_t device_mesh, const float center[3]);
+
+// What a kind of subjects does. Both get the number of the subject in the run.
+typedef struct prom_subject_class {
+    prom_unit_kind kind;
+    // Sets prototype and key, and adds the mesh candidates. Meshes that later subjects need are
+    // uploaded.
+    prom_status (*begin)(prom_subject *s, uint32_t index, prom_error *error);
+    // Takes truth and views; not called when an earlier build knows the results.
+    prom_status (*draw)(prom_subject *s, uint32_t index, prom_error *error);
+    // Adds what turned out to be needed, with views, once all else is measured. NULL: nothing.
+    prom_status (*amend)(prom_subject *s, uint32_t index, prom_error *error);
+    // Notes what the later work needs to know of the settled candidates. NULL: nothing.
+    void (*settled)(prom_subject *s, uint32_t index);
+} prom_subject_class;
+
+// Runs the subjects [0, count), where `index_of` (NULL: the number itself) gives their indices.
+prom_status prom_subjects_run(prom_build_state *b, const prom_subject_class *class,
+                              const uint32_t *index_of, uint32_t count, prom_progress *progress,
+                              prom_error *error);
+
+// ---- the store's form (subject_pack.c)
+
+void prom_subject_pack(const prom_subject *s, prom_pack *pack);
+// Fills in the results; the mesh candidates have been added. False if the bytes are not such.
+bool prom_subject_unpack(prom_subject *s, const prom_pack *pack);
+
+#endif

@@ -1,0 +1,78 @@
+// A settled subject as bytes, and back. Mesh candidates other than boxes are not in it: they
+// come from a unit of their own.
+#include "builder/subject.h"
+
+_Static_assert(sizeof(prom_representation) == 13 * 4, "packed without padding");
+
+static void pack_candidate(const prom_candidate *c, prom_pack *pack)
+{
+    uint32_t marks[2] = {c->kept, c->pictured};
+    prom_representation rep = c->rep;
+    rep.mesh = rep.texture = PROM_NONE; // of this build only
+    prom_pack_bytes(pack, marks, sizeof marks);
+    prom_pack_bytes(pack, &rep, sizeof rep);
+    prom_pack_bytes(pack, c->result.accuracy, sizeof c->result.accuracy);
+}
+
+void prom_subject_pack(const prom_subject *s, prom_pack *pack)
+{
+    uint32_t meshes = s->first_box < s->count ? s->first_box : s->count;
+    uint32_t counts[3] = {meshes, s->count - meshes, s->child_count};
+    prom_pack_bytes(pack, counts, sizeof counts);
+    prom_pack_bytes(pack, s->coverage, sizeof s->coverage);
+    prom_pack_bytes(pack, s->shares, s->child_count * sizeof *s->shares);
+    for (uint32_t i = 0; i < s->count; i++) {
+        pack_candidate(&s->candidates[i], pack);
+        if (i >= meshes) prom_pack_mesh(pack, &s->box_meshes[i - meshes]);
+        if (s->candidates[i].pictured) prom_pack_texture(pack, &s->picture);
+    }
+}
+
+static bool sound(const prom_representation *r)
+{
+    return r->kind < PROM_REP_KIND_COUNT && r->shading < PROM_SHADE_COUNT && r->error >= 0 &&
+           r->max_size_px > 0 && r->near_k >= 0 && r->switch_distance > 0;
+}
+
+static void unpack_candidate(prom_candidate *c, prom_unpack *in)
+{
+    c->kept = prom_unpack_u32(in, 1);
+    c->pictured = prom_unpack_u32(in, 1);
+    prom_unpack_bytes(in, &c->rep, sizeof c->rep);
+    prom_unpack_bytes(in, c->result.accuracy, sizeof c->result.accuracy);
+    if (!in->failed && !sound(&c->rep)) in->failed = true;
+}
+
+bool prom_subject_unpack(prom_subject *s, const prom_pack *pack)
+{
+    prom_unpack in = {.at = pack->data, .left = pack->count};
+    uint32_t meshes = prom_unpack_u32(&in, PROM_LEVELS_MAX);
+    uint32_t boxes = prom_unpack_u32(&in, PROM_BOXES);
+    uint32_t children = prom_unpack_u32(&in, UINT32_MAX);
+    const uint32_t added = s->count;
+    if (meshes != added || children != s->child_count) in.failed = true;
+    prom_unpack_bytes(&in, s->coverage, sizeof s->coverage);
+    if (!in.failed && children) prom_unpack_bytes(&in, s->shares, children * sizeof *s->shares);
+    if (boxes) s->first_box = added;
+    for (uint32_t i = 0; i < meshes + boxes && !in.failed; i++) {
+        prom_representation none = {0};
+        if (i >= meshes)
+            prom_subject_add(s, &s->box_meshes[i - meshes], &none, PROM_ADMIT_MEASURED);
+        unpack_candidate(&s->candidates[i], &in);
+        if (i >= meshes) prom_unpack_mesh(&in, &s->box_meshes[i - meshes]);
+        if (s->candidates[i].pictured && !in.failed) {
+            if (i < meshes || s->picture.pixels) in.failed = true;
+            if (!in.failed) prom_unpack_texture(&in, &s->picture);
+        }
+    }
+    if (prom_unpack_end(&in)) return true;
+    for (int i = 0; i < PROM_BOXES; i++) {
+        prom_mesh_finish(&s->box_meshes[i]);
+        s->box_meshes[i] = (prom_mesh){0};
+    }
+    prom_texture_finish(&s->picture);
+    s->picture = (prom_texture){0};
+    s->count = added; // as if there had been nothing
+    s->first_box = PROM_CANDIDATES_MAX;
+    return false;
+}
