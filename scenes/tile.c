@@ -1,7 +1,7 @@
 #include "scenes/tile.h"
 
 #include "metaobj/base/log.h"
-#include "scenes/gltf_layout.h"
+#include "scenes/tile_gltf_layout.h"
 
 #include <math.h>
 
@@ -11,8 +11,8 @@
 // The scene on its way from one tile to many.
 typedef struct tiling {
     const char *path;
-    prom_gltf gltf;
-    prom_gltf_layout layout;
+    prom_tile_gltf gltf;
+    prom_tile_gltf_layout layout;
     json_t *nodes;    // of the file
     json_t *roots;    // of a tile: the original nodes, without the backdrop
     json_t *backdrop; // root nodes that stand once
@@ -30,7 +30,7 @@ static prom_status choose_scene(tiling *t, prom_error *error)
     json_t *root = t->gltf.root, *scenes = json_object_get(root, "scenes");
     size_t index = 0;
     if (json_object_get(root, "scene") &&
-        !prom_gltf_index(root, "scene", json_array_size(scenes), &index))
+        !prom_tile_gltf_index(root, "scene", json_array_size(scenes), &index))
         return prom_fail(error, PROM_ERR_INPUT, "%s: its scene does not exist", t->path);
     json_t *scene = json_array_get(scenes, index);
     if (!scene) return prom_fail(error, PROM_ERR_INPUT, "%s: has no scene", t->path);
@@ -38,7 +38,7 @@ static prom_status choose_scene(tiling *t, prom_error *error)
     json_array_append(only, scene);
     json_object_set_new(root, "scenes", only);
     json_object_set_new(root, "scene", json_integer(0));
-    t->nodes = prom_gltf_array(root, "nodes");
+    t->nodes = prom_tile_gltf_array(root, "nodes");
     return PROM_OK;
 }
 
@@ -67,7 +67,7 @@ static json_t *matrix_json(const double m[16])
 }
 
 // A new mesh of those primitives of `mesh` that are backdrop, or are not.
-static json_t *pick_primitives(tiling *t, const prom_gltf_part *parts, size_t count,
+static json_t *pick_primitives(tiling *t, const prom_tile_gltf_part *parts, size_t count,
                                bool backdrop)
 {
     json_t *meshes = json_object_get(t->gltf.root, "meshes");
@@ -95,7 +95,7 @@ static void hoist(tiling *t, uint32_t node, json_t *mesh)
     json_array_append_new(t->backdrop, index_of_last(t->nodes));
 }
 
-static void part_backdrop(tiling *t, const prom_gltf_part *parts, size_t count)
+static void part_backdrop(tiling *t, const prom_tile_gltf_part *parts, size_t count)
 {
     size_t behind = 0;
     for (size_t i = 0; i < count; i++) behind += parts[i].backdrop;
@@ -115,7 +115,7 @@ static void part_backdrop(tiling *t, const prom_gltf_part *parts, size_t count)
 
 static void split_backdrop(tiling *t, const json_t *roots)
 {
-    const prom_gltf_part *parts = t->layout.parts.data;
+    const prom_tile_gltf_part *parts = t->layout.parts.data;
     for (size_t i = 0, end; i < t->layout.parts.count; i = end) {
         for (end = i; end < t->layout.parts.count && parts[end].node == parts[i].node;) end++;
         part_backdrop(t, parts + i, end - i);
@@ -188,7 +188,7 @@ static prom_status tile(tiling *t, const prom_tile_options *o, prom_error *error
     if (status) return status;
     json_t *scene = json_array_get(json_object_get(t->gltf.root, "scenes"), 0);
     const json_t *roots = json_object_get(scene, "nodes");
-    status = prom_gltf_layout_find(&t->gltf, t->path, roots, &t->layout, error);
+    status = prom_tile_gltf_layout_find(&t->gltf, t->path, roots, &t->layout, error);
     if (status) return status;
     uint64_t tiles = (uint64_t)o->columns * o->rows;
     if (json_array_size(t->nodes) * tiles > MAX_NODES)
@@ -205,7 +205,7 @@ static prom_status tile(tiling *t, const prom_tile_options *o, prom_error *error
     drop_motion(t);
     split_backdrop(t, roots);
     add_tiles(t, o, spacing);
-    prom_gltf_embed_images(&t->gltf, t->path);
+    prom_tile_gltf_embed_images(&t->gltf, t->path);
     prom_log(PROM_LOG_INFO, "%s: %u x %u tiles, spacing %.6g x %.6g, %u parts of backdrop",
              t->path, o->columns, o->rows, spacing[0], spacing[1], t->layout.backdrops);
     return PROM_OK;
@@ -224,15 +224,15 @@ prom_status prom_tile_write(const char *scene_path, const char *glb_path,
                              "a spacing of %g: give lengths above 0, or 0 for the scene's size",
                              o->spacing[k]);
     tiling t = {.path = scene_path};
-    prom_status status = prom_gltf_load(scene_path, &t.gltf, error);
+    prom_status status = prom_tile_gltf_load(scene_path, &t.gltf, error);
     if (status) return status;
     t.roots = json_array();
     t.backdrop = json_array();
     status = tile(&t, o, error);
-    if (!status) status = prom_gltf_save(&t.gltf, glb_path, error);
+    if (!status) status = prom_tile_gltf_save(&t.gltf, glb_path, error);
     json_decref(t.roots);
     json_decref(t.backdrop);
-    prom_gltf_layout_finish(&t.layout);
-    prom_gltf_finish(&t.gltf);
+    prom_tile_gltf_layout_finish(&t.layout);
+    prom_tile_gltf_finish(&t.gltf);
     return status;
 }

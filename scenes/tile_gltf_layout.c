@@ -1,4 +1,4 @@
-#include "scenes/gltf_layout.h"
+#include "scenes/tile_gltf_layout.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -63,18 +63,18 @@ static void multiply(const double a[16], const double b[16], double out[16])
 // ---- bounds of primitives
 
 // From the vertices themselves, where the accessor names no bounds.
-static bool bounds_from_data(const prom_gltf *gltf, const json_t *accessor, double min[3],
+static bool bounds_from_data(const prom_tile_gltf *gltf, const json_t *accessor, double min[3],
                              double max[3])
 {
     const json_t *views = json_object_get(gltf->root, "bufferViews");
     size_t v;
-    if (!prom_gltf_index(accessor, "bufferView", json_array_size(views), &v)) return false;
+    if (!prom_tile_gltf_index(accessor, "bufferView", json_array_size(views), &v)) return false;
     const json_t *view = json_array_get(views, v);
-    uint64_t count = prom_gltf_bytes(accessor, "count", 0);
-    uint64_t offset = prom_gltf_bytes(accessor, "byteOffset", 0);
-    uint64_t stride = prom_gltf_bytes(view, "byteStride", 12);
-    uint64_t start = prom_gltf_bytes(view, "byteOffset", 0);
-    uint64_t length = prom_gltf_bytes(view, "byteLength", 0);
+    uint64_t count = prom_tile_gltf_bytes(accessor, "count", 0);
+    uint64_t offset = prom_tile_gltf_bytes(accessor, "byteOffset", 0);
+    uint64_t stride = prom_tile_gltf_bytes(view, "byteStride", 12);
+    uint64_t start = prom_tile_gltf_bytes(view, "byteOffset", 0);
+    uint64_t length = prom_tile_gltf_bytes(view, "byteLength", 0);
     bool fits = stride >= 12 && stride <= 252 && count && count <= length && offset <= length &&
                 (count - 1) * stride + 12 <= length - offset;
     const json_t *type = json_object_get(accessor, "componentType");
@@ -91,13 +91,13 @@ static bool bounds_from_data(const prom_gltf *gltf, const json_t *accessor, doub
     return isfinite(min[0] + min[1] + min[2] + max[0] + max[1] + max[2]);
 }
 
-static bool bounds_of(const prom_gltf *gltf, const json_t *primitive, double min[3],
+static bool bounds_of(const prom_tile_gltf *gltf, const json_t *primitive, double min[3],
                       double max[3])
 {
     const json_t *accessors = json_object_get(gltf->root, "accessors");
     size_t a;
-    if (!prom_gltf_index(json_object_get(primitive, "attributes"), "POSITION",
-                         json_array_size(accessors), &a))
+    if (!prom_tile_gltf_index(json_object_get(primitive, "attributes"), "POSITION",
+                              json_array_size(accessors), &a))
         return false;
     const json_t *accessor = json_array_get(accessors, a);
     return (numbers(json_object_get(accessor, "min"), 3, min) &&
@@ -106,7 +106,7 @@ static bool bounds_of(const prom_gltf *gltf, const json_t *primitive, double min
 }
 
 static void to_world(const double m[16], const double min[3], const double max[3],
-                     prom_gltf_part *part)
+                     prom_tile_gltf_part *part)
 {
     for (int a = 0; a < 3; a++) {
         part->min[a] = part->max[a] = m[12 + a];
@@ -118,18 +118,19 @@ static void to_world(const double m[16], const double min[3], const double max[3
     }
 }
 
-static void add_parts(const prom_gltf *gltf, uint32_t node, prom_gltf_layout *layout)
+static void add_parts(const prom_tile_gltf *gltf, uint32_t node, prom_tile_gltf_layout *layout)
 {
     const json_t *meshes = json_object_get(gltf->root, "meshes");
     const json_t *json = json_array_get(json_object_get(gltf->root, "nodes"), node), *primitive;
     size_t mesh, p;
-    if (!prom_gltf_index(json, "mesh", json_array_size(meshes), &mesh)) return;
+    if (!prom_tile_gltf_index(json, "mesh", json_array_size(meshes), &mesh)) return;
     json_array_foreach(json_object_get(json_array_get(meshes, mesh), "primitives"), p,
                        primitive)
     {
         double min[3], max[3];
         if (!bounds_of(gltf, primitive, min, max)) continue;
-        prom_gltf_part part = {.node = node, .mesh = (uint32_t)mesh, .primitive = (uint32_t)p};
+        prom_tile_gltf_part part = {
+            .node = node, .mesh = (uint32_t)mesh, .primitive = (uint32_t)p};
         to_world(layout->world[node], min, max, &part);
         prom_array_push(&layout->parts, part);
     }
@@ -157,8 +158,8 @@ static bool push_all(const json_t *indices, size_t node_count, uint32_t depth,
     return true;
 }
 
-static prom_status walk(const prom_gltf *gltf, const char *path, const json_t *roots,
-                        prom_gltf_layout *layout, prom_error *error)
+static prom_status walk(const prom_tile_gltf *gltf, const char *path, const json_t *roots,
+                        prom_tile_gltf_layout *layout, prom_error *error)
 {
     static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     const json_t *nodes = json_object_get(gltf->root, "nodes");
@@ -196,7 +197,7 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static double middle_range(const prom_gltf_layout *layout, int axis)
+static double middle_range(const prom_tile_gltf_layout *layout, int axis)
 {
     size_t n = layout->parts.count;
     double *centers = prom_alloc(n, sizeof *centers);
@@ -208,18 +209,18 @@ static double middle_range(const prom_gltf_layout *layout, int axis)
     return range;
 }
 
-static double width_of(const prom_gltf_part *part)
+static double width_of(const prom_tile_gltf_part *part)
 {
     return fmax(part->max[0] - part->min[0], part->max[2] - part->min[2]);
 }
 
-static void find_backdrop(prom_gltf_layout *layout)
+static void find_backdrop(prom_tile_gltf_layout *layout)
 {
     enum { FEW = 20 }; // with fewer parts nine in ten of them say nothing
     double middle = fmax(middle_range(layout, 0), middle_range(layout, 2));
     for (int a = 0; a < 3; a++) layout->min[a] = INFINITY, layout->max[a] = -INFINITY;
     for (size_t i = 0; i < layout->parts.count; i++) {
-        prom_gltf_part *part = &layout->parts.data[i];
+        prom_tile_gltf_part *part = &layout->parts.data[i];
         part->backdrop = layout->parts.count >= FEW && width_of(part) > BACKDROP_RATIO * middle;
         layout->backdrops += part->backdrop;
         for (int a = 0; a < 3 && !part->backdrop; a++) {
@@ -229,22 +230,23 @@ static void find_backdrop(prom_gltf_layout *layout)
     }
 }
 
-prom_status prom_gltf_layout_find(const prom_gltf *gltf, const char *path, const json_t *roots,
-                                  prom_gltf_layout *layout, prom_error *error)
+prom_status prom_tile_gltf_layout_find(const prom_tile_gltf *gltf, const char *path,
+                                       const json_t *roots, prom_tile_gltf_layout *layout,
+                                       prom_error *error)
 {
-    *layout = (prom_gltf_layout){0};
+    *layout = (prom_tile_gltf_layout){0};
     prom_status status = walk(gltf, path, roots, layout, error);
     if (!status && !layout->parts.count)
         status = prom_fail(error, PROM_ERR_INPUT, "%s: its scene has no geometry", path);
     if (!status) find_backdrop(layout);
-    if (status) prom_gltf_layout_finish(layout);
+    if (status) prom_tile_gltf_layout_finish(layout);
     return status;
 }
 
-void prom_gltf_layout_finish(prom_gltf_layout *layout)
+void prom_tile_gltf_layout_finish(prom_tile_gltf_layout *layout)
 {
     prom_array_finish(&layout->parts);
     prom_free(layout->world);
     prom_free(layout->placed);
-    *layout = (prom_gltf_layout){0};
+    *layout = (prom_tile_gltf_layout){0};
 }

@@ -1,4 +1,4 @@
-#include "scenes/gltf.h"
+#include "scenes/tile_gltf.h"
 
 #include "builder/file_io.h"
 #include "metaobj/base/log.h"
@@ -8,7 +8,7 @@
 #define FILE_LIMIT ((uint64_t)4 << 30) // a .glb counts its bytes in 32 bits
 enum { GLB_MAGIC = 0x46546c67, CHUNK_JSON = 0x4e4f534a, CHUNK_BIN = 0x004e4942 };
 
-json_t *prom_gltf_array(json_t *object, const char *key)
+json_t *prom_tile_gltf_array(json_t *object, const char *key)
 {
     json_t *array = json_object_get(object, key);
     if (json_is_array(array)) return array;
@@ -17,7 +17,7 @@ json_t *prom_gltf_array(json_t *object, const char *key)
     return array;
 }
 
-bool prom_gltf_index(const json_t *object, const char *key, size_t limit, size_t *out)
+bool prom_tile_gltf_index(const json_t *object, const char *key, size_t limit, size_t *out)
 {
     const json_t *value = json_object_get(object, key);
     if (!json_is_integer(value)) return false;
@@ -27,7 +27,7 @@ bool prom_gltf_index(const json_t *object, const char *key, size_t limit, size_t
     return true;
 }
 
-uint64_t prom_gltf_bytes(const json_t *object, const char *key, uint64_t missing)
+uint64_t prom_tile_gltf_bytes(const json_t *object, const char *key, uint64_t missing)
 {
     const json_t *value = json_object_get(object, key);
     if (!value) return missing;
@@ -36,7 +36,7 @@ uint64_t prom_gltf_bytes(const json_t *object, const char *key, uint64_t missing
 }
 
 // Appends to bin at a multiple of 4 and gives the offset.
-static size_t append(prom_gltf *gltf, const uint8_t *data, size_t bytes)
+static size_t append(prom_tile_gltf *gltf, const uint8_t *data, size_t bytes)
 {
     size_t padding = (4 - gltf->bin.count % 4) % 4;
     if (padding) (void)prom_array_extend(&gltf->bin, padding);
@@ -136,7 +136,7 @@ static prom_status load_buffer(const char *path, size_t i, const json_t *buffer,
                                const prom_bytes *bin, prom_bytes *out, prom_error *error)
 {
     const char *uri = json_string_value(json_object_get(buffer, "uri"));
-    uint64_t bytes = prom_gltf_bytes(buffer, "byteLength", UINT64_MAX);
+    uint64_t bytes = prom_tile_gltf_bytes(buffer, "byteLength", UINT64_MAX);
     if (!uri && i == 0 && bin->data) {
         *out = (prom_bytes){prom_alloc(bin->count, 1), bin->count};
         memcpy(out->data, bin->data, bin->count);
@@ -164,16 +164,16 @@ static prom_status load_buffer(const char *path, size_t i, const json_t *buffer,
 static bool move_view(json_t *view, const size_t *base, const size_t *size, size_t count)
 {
     size_t b;
-    if (!prom_gltf_index(view, "buffer", count, &b)) return false;
-    uint64_t offset = prom_gltf_bytes(view, "byteOffset", 0);
-    uint64_t length = prom_gltf_bytes(view, "byteLength", UINT64_MAX);
+    if (!prom_tile_gltf_index(view, "buffer", count, &b)) return false;
+    uint64_t offset = prom_tile_gltf_bytes(view, "byteOffset", 0);
+    uint64_t length = prom_tile_gltf_bytes(view, "byteLength", UINT64_MAX);
     if (offset > size[b] || length > size[b] - offset) return false;
     json_object_set_new(view, "buffer", json_integer(0));
     json_object_set_new(view, "byteOffset", json_integer((json_int_t)(base[b] + offset)));
     return true;
 }
 
-static prom_status move_views(prom_gltf *gltf, const char *path, const size_t *base,
+static prom_status move_views(prom_tile_gltf *gltf, const char *path, const size_t *base,
                               const size_t *size, size_t count, prom_error *error)
 {
     json_t *view;
@@ -192,10 +192,10 @@ static prom_status move_views(prom_gltf *gltf, const char *path, const size_t *b
     return PROM_OK;
 }
 
-static prom_status merge_buffers(prom_gltf *gltf, const char *path, const prom_bytes *bin,
+static prom_status merge_buffers(prom_tile_gltf *gltf, const char *path, const prom_bytes *bin,
                                  prom_error *error)
 {
-    json_t *buffers = prom_gltf_array(gltf->root, "buffers");
+    json_t *buffers = prom_tile_gltf_array(gltf->root, "buffers");
     size_t count = json_array_size(buffers);
     size_t *base = prom_calloc(count, sizeof *base), *size = prom_calloc(count, sizeof *size);
     prom_status status = PROM_OK;
@@ -214,7 +214,7 @@ static prom_status merge_buffers(prom_gltf *gltf, const char *path, const prom_b
     return status;
 }
 
-static prom_status load(prom_gltf *gltf, const char *path, const prom_bytes *file,
+static prom_status load(prom_tile_gltf *gltf, const char *path, const prom_bytes *file,
                         prom_error *error)
 {
     prom_bytes json = *file, bin = {0};
@@ -233,15 +233,15 @@ static prom_status load(prom_gltf *gltf, const char *path, const prom_bytes *fil
     return status ? status : merge_buffers(gltf, path, &bin, error);
 }
 
-prom_status prom_gltf_load(const char *path, prom_gltf *gltf, prom_error *error)
+prom_status prom_tile_gltf_load(const char *path, prom_tile_gltf *gltf, prom_error *error)
 {
-    *gltf = (prom_gltf){0};
+    *gltf = (prom_tile_gltf){0};
     prom_bytes file;
     prom_status status = prom_file_read(path, FILE_LIMIT, &file, error);
     if (status) return status;
     status = load(gltf, path, &file, error);
     prom_free(file.data);
-    if (status) prom_gltf_finish(gltf);
+    if (status) prom_tile_gltf_finish(gltf);
     return status;
 }
 
@@ -277,7 +277,7 @@ static bool read_picture(const char *path, const char *uri, prom_bytes *out)
     return good;
 }
 
-static void embed(prom_gltf *gltf, const char *path, json_t *image)
+static void embed(prom_tile_gltf *gltf, const char *path, json_t *image)
 {
     const char *uri = json_string_value(json_object_get(image, "uri"));
     prom_bytes data = {0};
@@ -288,7 +288,7 @@ static void embed(prom_gltf *gltf, const char *path, json_t *image)
         prom_log(PROM_LOG_WARNING, "%s: its picture %.80s %s; it is left out of the .glb", path,
                  uri, good ? "is of no known format" : "is missing or broken");
     } else {
-        json_t *views = prom_gltf_array(gltf->root, "bufferViews");
+        json_t *views = prom_tile_gltf_array(gltf->root, "bufferViews");
         size_t offset = append(gltf, data.data, data.count);
         json_array_append_new(views, json_pack("{s:i, s:I, s:I}", "buffer", 0, "byteOffset",
                                                (json_int_t)offset, "byteLength",
@@ -304,7 +304,7 @@ static void embed(prom_gltf *gltf, const char *path, json_t *image)
     prom_free(data.data);
 }
 
-void prom_gltf_embed_images(prom_gltf *gltf, const char *path)
+void prom_tile_gltf_embed_images(prom_tile_gltf *gltf, const char *path)
 {
     json_t *image;
     size_t i;
@@ -321,7 +321,7 @@ static void put_u32(uint8_t *p, uint32_t v)
     for (int k = 0; k < 4; k++) p[k] = (uint8_t)(v >> 8 * k);
 }
 
-prom_status prom_gltf_save(const prom_gltf *gltf, const char *path, prom_error *error)
+prom_status prom_tile_gltf_save(const prom_tile_gltf *gltf, const char *path, prom_error *error)
 {
     static uint8_t spaces[4] = "   ", zeros[4];
     size_t bin_pad = (4 - gltf->bin.count % 4) % 4, bin_bytes = gltf->bin.count + bin_pad;
@@ -361,9 +361,9 @@ prom_status prom_gltf_save(const prom_gltf *gltf, const char *path, prom_error *
     return status;
 }
 
-void prom_gltf_finish(prom_gltf *gltf)
+void prom_tile_gltf_finish(prom_tile_gltf *gltf)
 {
     json_decref(gltf->root);
     prom_array_finish(&gltf->bin);
-    *gltf = (prom_gltf){0};
+    *gltf = (prom_tile_gltf){0};
 }
