@@ -12,9 +12,22 @@ typedef struct prom_run_facts {
     const char *scene, *path; // as given on the command line
 } prom_run_facts;
 
-// {"runs": [{...}]}; docs/FORMAT.md and `promenade bench --help` name the keys.
+// {"runs": [{...}]}, one object a run:
+//   scene, path, frames, warmup_frames, resolution, budget_ms, selector, device, program: what
+//     was run and where
+//   frame_ms: mean, p50, p95, p99, max, std; select_ms: mean, p99
+//   miss_rate, misses: count, longest_run; use_of_budget: mean frame time / budget
+//   triangles, draws, cut_nodes, benefit, loss (pixels): means over the frames
+//   predict: mape, worst_under; of the drawing time
+//   infeasible_frames: where even the cheapest cut was predicted above the budget;
+//     least_budget_ms: what would have done, or null
+//   holes: frames, mean, max, as a share of the covered pixels; null if not asked for
+//   accuracy: frames, mean, min of the pictures; predicted: the mean that the selector expected
+//     of the same frames; null if not asked for
+//   start_s, calibration_s, memory_mb: start, end
 json_t *prom_bench_json(const prom_run_facts *facts);
-// One row a frame, units in the header.
+// One row a frame, units in the header; holes and accuracy are empty where a frame was not
+// compared.
 prom_status prom_bench_write_csv(const char *path, const prom_loop_options *options,
                                  const prom_loop_result *result, prom_error *error);
 void prom_bench_print(const prom_run_facts *facts);

@@ -13,6 +13,7 @@ prom_status prom_command_build(int argc, char **argv, prom_error *error);
 prom_status prom_command_info(int argc, char **argv, prom_error *error);
 prom_status prom_command_shot(int argc, char **argv, prom_error *error);
 prom_status prom_command_bench(int argc, char **argv, prom_error *error);
+prom_status prom_command_walk(int argc, char **argv, prom_error *error);
 prom_status prom_command_calibrate(int argc, char **argv, prom_error *error);
 prom_status prom_command_scene(int argc, char **argv, prom_error *error);
 

@@ -3,17 +3,13 @@
 #include "app/comparison.h"
 #include "metaobj/base/clock.h"
 #include "metaobj/base/log.h"
-#include "traverse/governor.h"
 
 #include <stdio.h>
 #include <unistd.h>
 
 typedef struct loop {
-    prom_session *session;
+    prom_frame_step step;
     const prom_loop_options *options;
-    prom_selector *selector;
-    prom_governor governor;
-    prom_cut cut;
     prom_comparison comparison;
 } loop;
 
@@ -35,43 +31,15 @@ static double path_time(const prom_path *path, uint64_t frame)
     return span / (double)(keys - 1) * (double)frame;
 }
 
-// What the frame may be predicted at, and what its prediction is corrected by, are those of its
-// start: the feedback comes after it.
 static prom_frame_record draw_frame(loop *l, uint64_t pose)
 {
-    prom_session *s = l->session;
+    prom_session *s = l->step.session;
     prom_camera camera = s->camera;
-    prom_frame_options plain = {0};
-    double ratio = l->governor.ratio;
-
     double start = prom_clock_ms();
     prom_path_pose(&s->path, pose, &camera);
-    double allowed = prom_governor_budget(&l->governor, l->options->budget_ms);
-    prom_session_select(s, l->selector, &camera, allowed, l->options->distance_scale, &l->cut);
-    double selected = prom_clock_ms();
-    prom_session_draw(s, &l->cut, &camera, &plain);
-    double end = prom_clock_ms();
-
-    prom_draw_stats stats = prom_renderer_take_stats(s->renderer);
-    prom_frame_record record = {
-        .t_s = path_time(&s->path, pose),
-        .frame_ms = end - start,
-        .select_ms = selected - start,
-        .draw_ms = end - selected,
-        .predicted_ms = l->cut.predicted_ms * ratio,
-        .triangles = (double)stats.triangles,
-        .draws = (double)stats.draws,
-        .benefit_px = l->cut.benefit,
-        .loss_px = l->cut.loss,
-        .cut_nodes = (uint32_t)l->cut.entries.count,
-        .feasible = l->cut.cmin_ms <= allowed,
-    };
+    prom_frame_record record = prom_frame_step_draw(&l->step, &camera, start);
+    record.t_s = path_time(&s->path, pose);
     return record;
-}
-
-static void feed(loop *l, const prom_frame_record *record)
-{
-    prom_governor_feed(&l->governor, l->cut.predicted_ms, record->draw_ms, record->select_ms);
 }
 
 // The least budget from which the governor leaves `needed_ms` for the cut; it is monotone.
@@ -92,14 +60,14 @@ static double budget_for(const prom_governor *governor, double needed_ms)
 static void note_infeasible(const loop *l, prom_loop_result *result)
 {
     result->infeasible_frames++;
-    double needed = budget_for(&l->governor, l->cut.cmin_ms);
+    double needed = budget_for(&l->step.governor, l->step.cut.cmin_ms);
     if (needed > result->least_budget_ms) result->least_budget_ms = needed;
 }
 
 static prom_status keep_picture(loop *l, uint32_t frame, const char *suffix, prom_error *error)
 {
     char *path = prom_format("%s/frame-%05u%s.png", l->options->keep_folder, frame, suffix);
-    prom_status status = prom_session_write_png(l->session, path, error);
+    prom_status status = prom_session_write_png(l->step.session, path, error);
     prom_free(path);
     return status;
 }
@@ -111,7 +79,7 @@ static prom_status keep_pictures(loop *l, uint32_t frame, const prom_camera *cam
     prom_frame_options tinted = {.output = PROM_OUTPUT_TINT};
     prom_status status = keep_picture(l, frame, "", error);
     if (status || !l->options->keep_colours) return status;
-    prom_session_draw(l->session, &l->cut, camera, &tinted);
+    prom_session_draw(l->step.session, &l->step.cut, camera, &tinted);
     return keep_picture(l, frame, "-colours", error);
 }
 
@@ -126,7 +94,8 @@ static bool is_spaced(uint32_t i, uint32_t wanted, uint32_t frames)
 static void compare(loop *l, const prom_camera *camera, prom_frame_record *record)
 {
     if (!record->holes_checked && !record->accuracy_checked) return;
-    prom_difference d = prom_comparison_run(&l->comparison, l->session, camera, &l->cut);
+    prom_difference d =
+        prom_comparison_run(&l->comparison, l->step.session, camera, &l->step.cut);
     if (record->holes_checked) record->holes = d.holes;
     if (record->accuracy_checked) record->accuracy = d.accuracy;
 }
@@ -141,8 +110,8 @@ static prom_status between_frames(loop *l, uint32_t i, prom_frame_record *record
     record->holes_checked = is_spaced(i, o->check_holes, o->frames);
     record->accuracy_checked = is_spaced(i, o->check_accuracy, o->frames);
     if (!keep && !record->holes_checked && !record->accuracy_checked) return PROM_OK;
-    prom_camera camera = l->session->camera;
-    prom_path_pose(&l->session->path, i, &camera);
+    prom_camera camera = l->step.session->camera;
+    prom_path_pose(&l->step.session->path, i, &camera);
     if (keep) {
         prom_status status = keep_pictures(l, i, &camera, error);
         if (status) return status;
@@ -157,7 +126,7 @@ static void warm_up(loop *l)
     // Towards the start, so that the first recorded frame follows its neighbour.
     for (uint32_t i = l->options->warmup; i > 0; i--) {
         prom_frame_record record = draw_frame(l, i);
-        feed(l, &record);
+        prom_frame_step_feed(&l->step, &record);
     }
 }
 
@@ -173,7 +142,7 @@ static prom_status walk(loop *l, prom_loop_result *result, prom_error *error)
     for (uint32_t i = 0; i < o->frames && !status; i++) {
         prom_frame_record record = draw_frame(l, i);
         if (!record.feasible) note_infeasible(l, result);
-        feed(l, &record);
+        prom_frame_step_feed(&l->step, &record);
         status = between_frames(l, i, &record, error);
         prom_array_push(&result->frames, record);
         prom_progress_step(&progress, 1);
@@ -186,17 +155,16 @@ static prom_status walk(loop *l, prom_loop_result *result, prom_error *error)
 prom_status prom_frame_loop_run(prom_session *session, const prom_loop_options *options,
                                 prom_loop_result *result, prom_error *error)
 {
-    loop l = {.session = session, .options = options};
-    prom_status status = PROM_OK;
-    l.selector = prom_selector_create(options->selector, &session->model, error);
-    if (!l.selector) return error->status;
-    prom_governor_init(&l.governor, session->cost.margin);
+    loop l = {.options = options};
+    prom_status status =
+        prom_frame_step_init(&l.step, session, options->selector, options->budget_ms,
+                             options->distance_scale, error);
+    if (status) return status;
     if (options->check_holes || options->check_accuracy)
         status = prom_comparison_init(&l.comparison, session, options->check_accuracy, error);
     if (!status) status = walk(&l, result, error);
     prom_comparison_finish(&l.comparison);
-    prom_cut_finish(&l.cut);
-    prom_selector_destroy(l.selector);
+    prom_frame_step_finish(&l.step);
     return status;
 }
 

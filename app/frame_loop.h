@@ -4,21 +4,7 @@
 #ifndef PROM_APP_FRAME_LOOP_H
 #define PROM_APP_FRAME_LOOP_H
 
-#include "app/session.h"
-
-typedef struct prom_frame_record {
-    double t_s; // on the path
-    double frame_ms, select_ms, draw_ms;
-    double predicted_ms; // of draw_ms, as corrected before the frame
-    double triangles, draws;
-    double benefit_px, loss_px;
-    uint32_t cut_nodes;
-    bool feasible; // the cheapest cut was within what could be spent
-    // Comparison with full detail, where it was made.
-    bool holes_checked, accuracy_checked;
-    double holes;    // share of the pixels covered by full detail that the cut does not cover
-    double accuracy; // of the whole picture, in [0,1]
-} prom_frame_record;
+#include "app/frame_step.h"
 
 typedef struct prom_loop_options {
     const char *selector;

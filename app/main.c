@@ -12,6 +12,7 @@ static const prom_command commands[] = {
     {"build", "SCENE -o X.prom", "build a model from a scene", prom_command_build},
     {"info", "X.prom", "tell what a model holds", prom_command_info},
     {"shot", "X.prom -o A.png", "draw one picture", prom_command_shot},
+    {"walk", "X.prom", "walk through a model in a window", prom_command_walk},
     {"bench", "X.prom", "walk a path within a time per frame", prom_command_bench},
     {"calibrate", "", "measure what drawing costs here", prom_command_calibrate},
     {"scene", "city|tile", "make a scene", prom_command_scene},

@@ -14,9 +14,18 @@ static prom_status open_model(prom_session *s, const char *model_path, prom_erro
     return prom_container_load_model(s->container, &s->model, error);
 }
 
-static prom_status open_device(prom_session *s, const uint32_t size_px[2], prom_error *error)
+static prom_context *create_headless(void *user, uint32_t size_px[2], prom_error *error)
 {
-    s->context = prom_context_create_headless(error);
+    (void)user, (void)size_px;
+    return prom_context_create_headless(error);
+}
+
+static const prom_session_device headless = {create_headless, NULL};
+
+static prom_status open_device(prom_session *s, const prom_session_device *device,
+                               uint32_t size_px[2], prom_error *error)
+{
+    s->context = device->create(device->user, size_px, error);
     if (!s->context) return error->status;
     s->renderer = prom_renderer_create(s->context, error);
     if (!s->renderer) return error->status;
@@ -33,15 +42,16 @@ static prom_status open_path(prom_session *s, const char *path, uint32_t frames,
     return prom_path_load(path, &s->path, error);
 }
 
-static void set_camera(prom_session *s, const prom_view_options *options)
+static void set_camera(prom_session *s, const prom_view_options *options,
+                       const uint32_t size_px[2])
 {
     s->camera = (prom_camera){
         .orientation = {0, 0, 0, 1},
         .fov_y = (float)(options->fov_degrees * M_PI / 180.0),
         // Near enough for a close wall in any unit of length.
         .z_near = fminf(0.1f, s->model.radius[0] / 1000.0f),
-        .width = options->size_px[0],
-        .height = options->size_px[1],
+        .width = size_px[0],
+        .height = size_px[1],
     };
     if (!(s->camera.z_near > 0)) s->camera.z_near = 1e-4f; // a model of a single point
 }
@@ -52,23 +62,24 @@ static bool need_cost(const prom_view_options *options)
     return options->budget_ms > 0 || prom_selector_class_named(options->selector)->uses_cost;
 }
 
-static prom_status open_all(prom_session *s, const char *model_path,
-                            const prom_view_options *options, bool with_path,
-                            uint32_t path_frames, prom_error *error)
+static prom_status open_all(prom_session *s, const prom_session_device *device,
+                            const char *model_path, const prom_view_options *options,
+                            bool with_path, uint32_t path_frames, prom_error *error)
 {
+    uint32_t size_px[2] = {options->size_px[0], options->size_px[1]};
     double start = prom_clock_ms();
     prom_status status = open_model(s, model_path, error);
     if (!status && with_path) status = open_path(s, options->path, path_frames, error);
-    if (!status) status = open_device(s, options->size_px, error);
+    if (!status) status = open_device(s, device, size_px, error);
     if (status) return status;
     double before = prom_clock_ms();
-    status = prom_calibration_get(s->context, s->renderer, options->profile, options->size_px,
+    status = prom_calibration_get(s->context, s->renderer, options->profile, size_px,
                                   need_cost(options), &s->cost, error);
     if (status) return status;
     double calibrated = prom_clock_ms();
     status = prom_renderer_load(s->renderer, s->container, &s->model, error);
     if (status) return status;
-    set_camera(s, options);
+    set_camera(s, options, size_px);
     s->calibration_s = (calibrated - before) / 1000.0;
     s->start_s = (prom_clock_ms() - start) / 1000.0 - s->calibration_s;
     return PROM_OK;
@@ -78,8 +89,17 @@ prom_status prom_session_open(prom_session *session, const char *model_path,
                               const prom_view_options *options, bool with_path,
                               uint32_t path_frames, prom_error *error)
 {
+    return prom_session_open_on(session, &headless, model_path, options, with_path, path_frames,
+                                error);
+}
+
+prom_status prom_session_open_on(prom_session *session, const prom_session_device *device,
+                                 const char *model_path, const prom_view_options *options,
+                                 bool with_path, uint32_t path_frames, prom_error *error)
+{
     *session = (prom_session){0};
-    prom_status status = open_all(session, model_path, options, with_path, path_frames, error);
+    prom_status status =
+        open_all(session, device, model_path, options, with_path, path_frames, error);
     if (status) prom_session_close(session);
     return status;
 }
@@ -94,6 +114,18 @@ void prom_session_close(prom_session *session)
     prom_model_finish(&session->model);
     prom_container_close(session->container);
     *session = (prom_session){0};
+}
+
+prom_status prom_session_resize(prom_session *session, const uint32_t size_px[2],
+                                prom_error *error)
+{
+    prom_target *target = prom_target_create(size_px[0], size_px[1], false, error);
+    if (!target) return error->status;
+    prom_target_destroy(session->target);
+    session->target = target;
+    session->camera.width = size_px[0];
+    session->camera.height = size_px[1];
+    return PROM_OK;
 }
 
 void prom_session_select(const prom_session *session, prom_selector *selector,

@@ -1,5 +1,5 @@
 // A session: a model opened and loaded on the device, with all that it takes to draw frames of
-// it. Shared by `shot` and `bench`.
+// it. Shared by `shot`, `bench` and `walk`.
 #ifndef PROM_APP_SESSION_H
 #define PROM_APP_SESSION_H
 
@@ -31,8 +31,21 @@ typedef struct prom_session {
 prom_status prom_session_open(prom_session *session, const char *model_path,
                               const prom_view_options *options, bool with_path,
                               uint32_t path_frames, prom_error *error);
+// Where a session gets its GL context from, once the model has been read. The context becomes
+// the session's; size_px is the size asked for and may be changed to what there is.
+typedef struct prom_session_device {
+    prom_context *(*create)(void *user, uint32_t size_px[2], prom_error *error);
+    void *user;
+} prom_session_device;
+// The same on another device than a headless one.
+prom_status prom_session_open_on(prom_session *session, const prom_session_device *device,
+                                 const char *model_path, const prom_view_options *options,
+                                 bool with_path, uint32_t path_frames, prom_error *error);
 void prom_session_close(prom_session *session); // {0} is allowed
 
+// Gives the pictures another size. On failure the old one stays.
+prom_status prom_session_resize(prom_session *session, const uint32_t size_px[2],
+                                prom_error *error);
 // Selects a cut for a view.
 void prom_session_select(const prom_session *session, prom_selector *selector,
                          const prom_camera *camera, double budget_ms, double distance_scale,

@@ -177,9 +177,10 @@ static draft make_draft(prom_import *import, const struct aiMaterial *material,
         for (int k = 0; k < 3; k++) d.color[k] = fminf(d.color[k] + glow[k], 1);
     int two_sided = 0;
     unsigned one = 1;
-    d.two_sided = aiGetMaterialIntegerArray(material, AI_MATKEY_TWOSIDED, &two_sided, &one) ==
-                      aiReturn_SUCCESS &&
-                  two_sided;
+    d.two_sided = import->both_sides ||
+                  (aiGetMaterialIntegerArray(material, AI_MATKEY_TWOSIDED, &two_sided, &one) ==
+                       aiReturn_SUCCESS &&
+                   two_sided);
     return d;
 }
 

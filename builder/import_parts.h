@@ -21,6 +21,7 @@ typedef struct prom_import {
     const struct aiScene *scene;
     bool gltf;                         // colours and factors are linear, alpha modes are given
     prom_gltf gltf_file;               // what was read before assimp, empty for other formats
+    bool both_sides;                   // every surface is seen from both
     double unit;                       // distances of the file to those of the source
     PROM_ARRAY(uint32_t) node_numbers; // per node of the source, while gltf_file.numbered
     prom_source *source;               // the result
@@ -50,6 +51,10 @@ struct aiFileIO prom_import_files(prom_import *import);
 // apply: to the root's matrix, after reading; sets import->unit.
 void prom_import_axes_prepare(const prom_import *import, struct aiPropertyStore *settings);
 void prom_import_axes_apply(prom_import *import, double root[16]);
+
+// import_ac3d.c: assimp does not tell which surfaces of an AC3D file are seen from both sides;
+// true when some are. False for other formats.
+bool prom_import_ac3d_both_sides(const char *path);
 
 // import_levels.c: once nodes and meshes are read, puts the levels that import_gltf_lod.c found
 // where they belong.

@@ -304,6 +304,7 @@ prom_status prom_import_run(prom_import *import, prom_error *error)
     prom_status status = open_scene(import, error);
     if (status) return status;
     import->gltf = is_gltf(import);
+    import->both_sides = prom_import_ac3d_both_sides(import->path);
     status = read_nodes(import, error);
     if (status) return status;
     read_content(import);

@@ -1,4 +1,4 @@
-#include "render/context.h"
+#include "render/context_private.h"
 
 #include "metaobj/base/alloc.h"
 #include "metaobj/base/log.h"
@@ -13,7 +13,7 @@
 #define MIN_VERSION 45
 
 struct prom_context {
-    EGLDisplay display;
+    EGLDisplay display; // EGL_NO_DISPLAY: the GL context is a window's
     EGLContext gl;
     EGLSurface surface; // 1x1 pbuffer where contexts need one, else EGL_NO_SURFACE
     const char *renderer, *version;
@@ -39,7 +39,7 @@ static bool is_software_name(const char *renderer)
     return false;
 }
 
-static bool wants_gl_debug(void)
+bool context_wants_debug(void)
 {
 #if defined PROM_SANITIZE || !defined __OPTIMIZE__
     return true;
@@ -85,7 +85,7 @@ static bool make_current(prom_context *c, EGLDisplay display)
                                  EGL_CONTEXT_OPENGL_PROFILE_MASK,
                                  EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                                  EGL_CONTEXT_OPENGL_DEBUG,
-                                 wants_gl_debug(),
+                                 context_wants_debug(),
                                  EGL_NONE};
     const EGLint one_pixel[] = {EGL_WIDTH, 1, EGL_HEIGHT, 1, EGL_NONE};
     const char *extensions = eglQueryString(display, EGL_EXTENSIONS);
@@ -106,9 +106,31 @@ static bool make_current(prom_context *c, EGLDisplay display)
 // process, so that terminating it would end the contexts of others too.
 static void leave(prom_context *c)
 {
+    if (c->display == EGL_NO_DISPLAY) return;
     eglMakeCurrent(c->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     if (c->surface != EGL_NO_SURFACE) eglDestroySurface(c->display, c->surface);
     if (c->gl != EGL_NO_CONTEXT) eglDestroyContext(c->display, c->gl);
+}
+
+// Fills in what the current GL context is; whether it is of the wanted kind and version.
+static bool describe(prom_context *c, preference wanted)
+{
+    if (epoxy_gl_version() < MIN_VERSION) return false;
+    c->renderer = (const char *)glGetString(GL_RENDERER);
+    c->version = (const char *)glGetString(GL_VERSION);
+    c->software = is_software_name(c->renderer);
+    return wanted == ANY_DEVICE || c->software == (wanted == ONLY_SOFTWARE);
+}
+
+static prom_context *keep(const prom_context *c)
+{
+    prom_context *context = prom_alloc(1, sizeof *context);
+    *context = *c;
+    context->renderer = prom_strdup(c->renderer);
+    context->version = prom_strdup(c->version);
+    if (context_wants_debug()) listen_to_gl();
+    prom_log(PROM_LOG_DEBUG, "GL device: %s, OpenGL %s", context->renderer, context->version);
+    return context;
 }
 
 // A context on a display, or NULL if it has no GL 4.5 core or is not the wanted kind of device.
@@ -116,22 +138,11 @@ static prom_context *try_display(EGLDisplay display, preference wanted)
 {
     if (display == EGL_NO_DISPLAY || !eglInitialize(display, NULL, NULL)) return NULL;
     prom_context c = {.display = display, .gl = EGL_NO_CONTEXT, .surface = EGL_NO_SURFACE};
-    if (!make_current(&c, display) || epoxy_gl_version() < MIN_VERSION) {
+    if (!make_current(&c, display) || !describe(&c, wanted)) {
         leave(&c);
         return NULL;
     }
-    c.renderer = (const char *)glGetString(GL_RENDERER);
-    c.version = (const char *)glGetString(GL_VERSION);
-    c.software = is_software_name(c.renderer);
-    if ((wanted == ONLY_HARDWARE && c.software) || (wanted == ONLY_SOFTWARE && !c.software)) {
-        leave(&c);
-        return NULL;
-    }
-    prom_context *context = prom_alloc(1, sizeof *context);
-    *context = c;
-    context->renderer = prom_strdup(c.renderer);
-    context->version = prom_strdup(c.version);
-    return context;
+    return keep(&c);
 }
 
 static prom_context *try_surfaceless(const char *extensions, preference wanted)
@@ -200,9 +211,24 @@ prom_context *prom_context_create_headless(prom_error *error)
                   wanted == ANY_DEVICE ? "" : " or unset PROM_GL_DEVICE");
         return NULL;
     }
-    if (wants_gl_debug()) listen_to_gl();
-    prom_log(PROM_LOG_DEBUG, "GL device: %s, OpenGL %s", context->renderer, context->version);
     return context;
+}
+
+prom_context *context_of_current(prom_error *error)
+{
+    preference wanted;
+    if (read_preference(&wanted, error)) return NULL;
+    prom_context c = {
+        .display = EGL_NO_DISPLAY, .gl = EGL_NO_CONTEXT, .surface = EGL_NO_SURFACE};
+    if (describe(&c, wanted)) return keep(&c);
+    if (c.renderer)
+        prom_fail(error, PROM_ERR_UNSUPPORTED,
+                  "windows are drawn by `%s`, which PROM_GL_DEVICE rules out: unset it",
+                  c.renderer);
+    else
+        prom_fail(error, PROM_ERR_UNSUPPORTED,
+                  "the window has no OpenGL 4.5: install a driver");
+    return NULL;
 }
 
 void prom_context_destroy(prom_context *context)

@@ -6,7 +6,7 @@
 set -eu
 
 build="cmake ninja-build gcc g++ pkg-config libassimp-dev libmeshoptimizer-dev libcglm-dev
-       libepoxy-dev libegl-dev libegl-mesa0 libgl1-mesa-dri libopenimageio-dev libimath-dev
+       libepoxy-dev libglfw3-dev libegl-dev libegl-mesa0 libgl1-mesa-dri libopenimageio-dev libimath-dev
        libsqlite3-dev libzstd-dev libxxhash-dev libjansson-dev libcmocka-dev"
 test=""
 demo="jq"

@@ -1,0 +1,57 @@
+#include "app/frame_step.h"
+
+#include "metaobj/base/clock.h"
+
+prom_status prom_frame_step_init(prom_frame_step *step, prom_session *session,
+                                 const char *selector, double budget_ms, double distance_scale,
+                                 prom_error *error)
+{
+    *step = (prom_frame_step){
+        .session = session, .budget_ms = budget_ms, .distance_scale = distance_scale};
+    prom_governor_init(&step->governor, session->cost.margin);
+    step->selector = prom_selector_create(selector, &session->model, error);
+    return step->selector ? PROM_OK : error->status;
+}
+
+void prom_frame_step_finish(prom_frame_step *step)
+{
+    prom_cut_finish(&step->cut);
+    prom_selector_destroy(step->selector);
+}
+
+// What the frame may be predicted at, and what its prediction is corrected by, are those of its
+// start: the feedback comes after it.
+prom_frame_record prom_frame_step_draw(prom_frame_step *step, const prom_camera *camera,
+                                       double start_ms)
+{
+    prom_session *s = step->session;
+    prom_frame_options plain = {0};
+    double ratio = step->governor.ratio;
+
+    double allowed = prom_governor_budget(&step->governor, step->budget_ms);
+    prom_session_select(s, step->selector, camera, allowed, step->distance_scale, &step->cut);
+    double selected = prom_clock_ms();
+    prom_session_draw(s, &step->cut, camera, &plain);
+    double end = prom_clock_ms();
+
+    prom_draw_stats stats = prom_renderer_take_stats(s->renderer);
+    prom_frame_record record = {
+        .frame_ms = end - start_ms,
+        .select_ms = selected - start_ms,
+        .draw_ms = end - selected,
+        .predicted_ms = step->cut.predicted_ms * ratio,
+        .triangles = (double)stats.triangles,
+        .draws = (double)stats.draws,
+        .benefit_px = step->cut.benefit,
+        .loss_px = step->cut.loss,
+        .cut_nodes = (uint32_t)step->cut.entries.count,
+        .feasible = step->cut.cmin_ms <= allowed,
+    };
+    return record;
+}
+
+void prom_frame_step_feed(prom_frame_step *step, const prom_frame_record *record)
+{
+    prom_governor_feed(&step->governor, step->cut.predicted_ms, record->draw_ms,
+                       record->select_ms);
+}
