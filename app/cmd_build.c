@@ -5,18 +5,20 @@
 
 #include "builder/pipeline.h"
 #include "metaobj/base/clock.h"
+#include "metaobj/base/threads.h"
 #include "traverse/cost.h"
 
 #include <inttypes.h>
+#include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-
-// The defaults of the builder (builder/objects.h).
 
 typedef struct build_options {
     prom_build_options build;
     const char *scene, *output;
+    unsigned jobs; // 0: all cores
 } build_options;
 
 enum {
@@ -31,7 +33,13 @@ enum {
     KEY_MAX_TEXTURE,
     KEY_IMPORT_MEMORY,
     KEY_IMPORT_TIME,
+    KEY_UP_AXIS,
+    KEY_UNIT,
     KEY_PROFILE,
+    KEY_MEMORY,
+    KEY_FORCE,
+    KEY_FROM,
+    KEY_DROP_WORK,
 };
 
 static const struct argp_option options[] = {
@@ -42,6 +50,8 @@ static const struct argp_option options[] = {
      "Memory that reading the scene may take (8192)", 1},
     {"import-time-s", KEY_IMPORT_TIME, "S", 0,
      "Processor time that reading the scene may take (300)", 1},
+    {"up-axis", KEY_UP_AXIS, "y|z", 0, "The scene's upward axis (what the file says)", 1},
+    {"unit-m", KEY_UNIT, "M", 0, "Metres of a unit of the scene (what the file says, or 1)", 1},
     {0, 0, 0, 0, "Objects:", 2},
     {"max-object-triangles", KEY_MAX_OBJECT, "N", 0, "Split larger objects (4096)", 2},
     {"min-object-triangles", KEY_MIN_OBJECT, "N", 0, "Gather smaller neighbours (256)", 2},
@@ -57,6 +67,15 @@ static const struct argp_option options[] = {
     {0, 0, 0, 0, "Impostors and cost:", 4},
     {"texture-mb", KEY_TEXTURE_MB, "MB", 0, "Memory for impostor pictures (256)", 4},
     {"profile", KEY_PROFILE, "FILE", 0, "Cost profile that the model is built for", 4},
+    {0, 0, 0, 0, "Work:", 5},
+    {"jobs", 'j', "N", 0, "Cores to use (all)", 5},
+    {"memory-mb", KEY_MEMORY, "MB", 0,
+     "Memory to stay within: fewer things are under way at a time (any)", 5},
+    {"from", KEY_FROM, "STAGE", 0,
+     "Take nothing from earlier builds from this stage on: levels, leaves or clusters", 5},
+    {"force", KEY_FORCE, NULL, 0, "Take nothing from earlier builds", 5},
+    {"drop-work", KEY_DROP_WORK, NULL, 0,
+     "Delete X.prom.work, which serves later builds, at the end", 5},
     {0},
 };
 
@@ -76,8 +95,59 @@ static error_t parse_import(build_options *o, int key, char *text, struct argp_s
         import->time_s =
             (uint32_t)prom_option_whole(state, "--import-time-s", text, 1, 1000000);
         break;
+    case KEY_UP_AXIS:
+        if (strcmp(text, "y") && strcmp(text, "z"))
+            argp_error(state, "--up-axis: `%s` is neither y nor z", text);
+        import->up = *text == 'y' ? PROM_UP_Y : PROM_UP_Z;
+        break;
+    case KEY_UNIT:
+        import->unit_m = prom_option_number(state, "--unit-m", text, 1e-9, 1e9);
+        break;
     default:
         return ARGP_ERR_UNKNOWN;
+    }
+    return 0;
+}
+
+static void parse_from(prom_build_options *build, const char *text,
+                       const struct argp_state *state)
+{
+    static const struct {
+        const char *stage;
+        prom_build_from from;
+    } stages[] = {{"import", PROM_BUILD_FROM_START},     {"objects", PROM_BUILD_FROM_START},
+                  {"tree", PROM_BUILD_FROM_START},       {"textures", PROM_BUILD_FROM_START},
+                  {"levels", PROM_BUILD_FROM_START},     {"leaves", PROM_BUILD_FROM_LEAVES},
+                  {"clusters", PROM_BUILD_FROM_CLUSTERS}};
+    for (size_t i = 0; i < sizeof stages / sizeof *stages; i++)
+        if (!strcmp(text, stages[i].stage)) {
+            build->from = stages[i].from;
+            return;
+        }
+    argp_error(state, "--from: `%s` is no stage; give levels, leaves or clusters", text);
+}
+
+static error_t parse_work(build_options *o, int key, char *text, struct argp_state *state)
+{
+    switch (key) {
+    case 'j':
+        o->jobs = (unsigned)prom_option_whole(state, "--jobs", text, 1, 64);
+        break;
+    case KEY_MEMORY:
+        o->build.memory_mb =
+            (uint32_t)prom_option_whole(state, "--memory-mb", text, 64, 1 << 24);
+        break;
+    case KEY_FORCE:
+        o->build.from = PROM_BUILD_FROM_START;
+        break;
+    case KEY_FROM:
+        parse_from(&o->build, text, state);
+        break;
+    case KEY_DROP_WORK:
+        o->build.drop_work = true;
+        break;
+    default:
+        return parse_import(o, key, text, state);
     }
     return 0;
 }
@@ -98,7 +168,7 @@ static error_t parse_objects(build_options *o, int key, char *text, struct argp_
         objects->chunk_size = prom_option_number(state, "--chunk-size", text, 1e-6, 1e9);
         break;
     default:
-        return parse_import(o, key, text, state);
+        return parse_work(o, key, text, state);
     }
     return 0;
 }
@@ -197,8 +267,13 @@ static const struct argp argp = {
     .options = options,
     .parser = parse,
     .args_doc = "SCENE",
-    .doc = "Build a model from a scene (glTF, GLB, OBJ or PLY).\v"
-           "The model appears when the build has succeeded, or not at all.",
+    .doc =
+        "Build a model from a scene: glTF, GLB, OBJ, PLY, FBX, DAE, 3DS, STL, AC and what else "
+        "assimp reads.\v"
+        "The model appears when the build has succeeded, or not at all. A build that was cut "
+        "off goes on where it stopped when it is started again, and one with other options "
+        "or a changed scene redoes only what depends on them: X.prom.work beside the model "
+        "holds what was done. It may be deleted at any time.",
     .children = children,
 };
 
@@ -233,7 +308,19 @@ static void print_report(const build_options *o, const prom_build_report *r, dou
     printf("representations  %12" PRIu32 "\n", r->representations);
     printf("file             %12.1f MiB (%.0f bytes a triangle)\n",
            (double)r->file_bytes / (1 << 20), (double)r->file_bytes / triangles);
+    if (r->work_bytes)
+        printf("work file        %12.1f MiB (makes the next build of this model quick)\n",
+               (double)r->work_bytes / (1 << 20));
     printf("peak memory      %12.1f MiB\n", (double)r->peak_bytes / (1 << 20));
+}
+
+// The software rasteriser has threads of its own, by default one for each core.
+static void use_jobs(unsigned jobs)
+{
+    char text[16];
+    prom_thread_set_count(jobs);
+    snprintf(text, sizeof text, "%u", jobs == 1 ? 0 : jobs);
+    setenv("LP_NUM_THREADS", text, 0);
 }
 
 prom_status prom_command_build(int argc, char **argv, prom_error *error)
@@ -244,6 +331,9 @@ prom_status prom_command_build(int argc, char **argv, prom_error *error)
         memcpy(o.build.tree.divisions, (uint32_t[]){16, 1, 16}, sizeof o.build.tree.divisions);
     prom_status status = check_files(&o, error);
     if (status) return status;
+    if (o.jobs) use_jobs(o.jobs);
+    // A full disk or quota is to be an error with a message, not the end of the process.
+    signal(SIGXFSZ, SIG_IGN);
     double start = prom_clock_ms();
     prom_build_report report = {0};
     status = prom_build(o.scene, o.output, &o.build, &report, error);

@@ -6,6 +6,7 @@
 #include "builder/measure.h"
 #include "builder/pipeline.h"
 #include "builder/store.h"
+#include "metaobj/base/log.h"
 #include "metaobj/base/threads.h"
 #include "metaobj/container.h"
 
@@ -48,7 +49,7 @@ typedef struct prom_cluster_build {
 
 typedef struct prom_build_state {
     const prom_build_options *options; // defaults put in
-    const char *scene_path;
+    const char *scene_path, *out_path;
     prom_source source;
     prom_objects objects;
     prom_tree tree;
@@ -72,6 +73,7 @@ typedef struct prom_build_state {
     prom_writer *writer;
     prom_store *store;
     uint64_t program_key, device_key; // what every unit, and every measured unit, depends on
+    uint32_t units, units_taken;      // as in the report
     uint64_t *material_keys;          // per material: its values and its picture
     prom_context *context;
     prom_renderer *renderer;
@@ -102,6 +104,9 @@ prom_status prom_build_write_texture(prom_build_state *b, const prom_texture *te
                                      uint32_t *id, prom_error *error);
 // A prom_fail for a device without memory; `what` as in "meshes".
 prom_status prom_build_device_full(const char *what, prom_error *error);
+
+// Ends a stage's progress and counts its units.
+void prom_build_end_progress(prom_build_state *b, prom_progress *progress);
 
 // ---- keys of units: hashes of all that their results depend on (unit_keys.c)
 

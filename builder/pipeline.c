@@ -23,6 +23,13 @@ uint64_t prom_build_spare_memory(const prom_build_state *b, uint64_t least)
     return used + least < limit ? limit - used : least;
 }
 
+void prom_build_end_progress(prom_build_state *b, prom_progress *progress)
+{
+    b->units += (uint32_t)progress->done;
+    b->units_taken += (uint32_t)progress->reused;
+    prom_progress_end(progress);
+}
+
 static prom_status stage_import(prom_build_state *b, prom_error *error)
 {
     return prom_source_import(b->scene_path, &b->options->import, &b->source, error);
@@ -49,8 +56,25 @@ static prom_status stage_tree(prom_build_state *b, prom_error *error)
     return PROM_OK;
 }
 
-static prom_status open_device(prom_build_state *b, prom_error *error)
+static prom_status open_store(prom_build_state *b, prom_error *error)
 {
+    static const prom_unit_kind redo[] = {
+        [PROM_BUILD_FROM_NOWHERE] = PROM_UNIT_COUNT,
+        [PROM_BUILD_FROM_START] = PROM_UNIT_LEVELS,
+        [PROM_BUILD_FROM_LEAVES] = PROM_UNIT_LEAF,
+        [PROM_BUILD_FROM_CLUSTERS] = PROM_UNIT_MERGE,
+    };
+    prom_keys_of_program(b);
+    b->store = prom_store_open(b->out_path, redo[b->options->from], error);
+    return b->store ? PROM_OK : error->status;
+}
+
+// After import: its child must not inherit a device, and a scene that cannot be read leaves no
+// store.
+static prom_status open_tools(prom_build_state *b, prom_error *error)
+{
+    prom_status status = open_store(b, error);
+    if (status) return status;
     b->context = prom_context_create_headless(error);
     if (!b->context) return error->status;
     b->renderer = prom_renderer_create(b->context, error);
@@ -152,16 +176,18 @@ static prom_status record_profile(prom_build_state *b, prom_error *error)
 
 static prom_status record_settings(prom_build_state *b, const char *scene, prom_error *error)
 {
+    static const char *const up_names[] = {
+        [PROM_UP_FROM_FILE] = "file", [PROM_UP_Y] = "y", [PROM_UP_Z] = "z"};
     const prom_build_options *o = b->options;
     char text[512];
     snprintf(
         text, sizeof text,
         "max-triangles %u, min-triangles %u, chunk-size %g, octree %s, divisions %u,%u,%u, "
-        "group-radius %g, max-texture-px %u, texture-mb %u",
+        "group-radius %g, max-texture-px %u, up-axis %s, unit-m %g, texture-mb %u",
         o->objects.max_triangles, o->objects.min_triangles, o->objects.chunk_size,
         o->tree.octree == PROM_OCTREE_STRICT ? "strict" : "loose", o->tree.divisions[0],
         o->tree.divisions[1], o->tree.divisions[2], o->tree.group_radius,
-        o->import.max_texture_px, o->texture_mb);
+        o->import.max_texture_px, up_names[o->import.up], o->import.unit_m, o->texture_mb);
     const char *slash = strrchr(scene, '/');
     prom_status status =
         prom_writer_set_meta(b->writer, "source", slash ? slash + 1 : scene, error);
@@ -188,7 +214,7 @@ static prom_status run_stages(prom_build_state *b, const char *scene, prom_error
         uint64_t (*hash)(const prom_build_state *, uint64_t);
     } stages[] = {
         {"import", stage_import, hash_import},
-        {"device", open_device, NULL}, // after import, whose child must not inherit it
+        {"device", open_tools, NULL},
         {"objects", stage_objects, hash_objects},
         {"tree", stage_tree, hash_tree},
         {"textures", prom_stage_textures, hash_textures},
@@ -199,7 +225,6 @@ static prom_status run_stages(prom_build_state *b, const char *scene, prom_error
     };
     uint64_t hash = 0;
     b->scene_path = scene;
-    prom_keys_of_program(b);
     for (size_t i = 0; i < sizeof stages / sizeof *stages; i++) {
         double start = prom_clock_ms();
         prom_status status = stages[i].run(b, error);
@@ -225,6 +250,8 @@ static void fill_report(const prom_build_state *b, const char *path, prom_build_
         .prototypes = m->prototype_count,
         .nodes = m->node_count,
         .representations = m->rep_count,
+        .units = b->units,
+        .units_taken = b->units_taken,
     };
     for (uint32_t i = 0; i < m->tree_count; i++)
         if (m->child_count[i] > report->max_children) report->max_children = m->child_count[i];
@@ -297,15 +324,13 @@ static void finish_state(prom_build_state *b)
     prom_source_finish(&b->source);
 }
 
-static prom_store *open_store(const char *out_path, prom_build_from from, prom_error *error)
+static void warn_of_memory(const prom_build_options *o, const prom_build_report *report)
 {
-    static const prom_unit_kind redo[] = {
-        [PROM_BUILD_FROM_NOWHERE] = PROM_UNIT_COUNT,
-        [PROM_BUILD_FROM_START] = PROM_UNIT_LEVELS,
-        [PROM_BUILD_FROM_LEAVES] = PROM_UNIT_LEAF,
-        [PROM_BUILD_FROM_CLUSTERS] = PROM_UNIT_MERGE,
-    };
-    return prom_store_open(out_path, redo[from], error);
+    if (o->memory_mb && report->peak_bytes >> 20 > o->memory_mb)
+        prom_log(PROM_LOG_WARNING,
+                 "%llu MiB were needed where --memory-mb allows %u: the scene itself and the "
+                 "device's driver took it",
+                 (unsigned long long)(report->peak_bytes >> 20), o->memory_mb);
 }
 
 prom_status prom_build(const char *scene_path, const char *out_path,
@@ -313,20 +338,23 @@ prom_status prom_build(const char *scene_path, const char *out_path,
                        prom_error *error)
 {
     const prom_build_options all = resolved(options);
-    prom_build_state b = {.options = &all};
+    prom_build_state b = {.options = &all, .out_path = out_path};
     prom_error local;
     if (!error) error = &local;
     prom_status status = PROM_OK;
     b.writer = prom_writer_create(out_path, error); // and with it the lock
     if (!b.writer) status = error->status;
-    if (!status) b.store = open_store(out_path, all.from, error);
-    if (!status && !b.store) status = error->status;
     if (!status) status = run_stages(&b, scene_path, error);
     if (!status) status = prom_store_prune(b.store, error);
     prom_store_close(b.store);
     if (!status && all.drop_work) status = prom_store_delete(out_path, error);
     if (!status) status = prom_writer_finish(b.writer, error);
-    if (!status && report) fill_report(&b, out_path, report);
+    if (!status) {
+        prom_build_report made;
+        fill_report(&b, out_path, &made);
+        warn_of_memory(&all, &made);
+        if (report) *report = made;
+    }
     finish_state(&b);
     return status;
 }

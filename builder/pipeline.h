@@ -30,6 +30,7 @@ typedef struct prom_build_options {
 typedef struct prom_build_report {
     uint64_t source_triangles; // instanced
     uint32_t objects, prototypes, nodes, max_children, representations;
+    uint32_t units, units_taken; // of work: all, and those taken from earlier builds
     uint64_t file_bytes, work_bytes, peak_bytes;
 } prom_build_report;
 

@@ -264,6 +264,6 @@ prom_status prom_stage_clusters(prom_build_state *b, prom_error *error)
         done += row.count;
     }
     prom_array_finish(&row);
-    if (!status) prom_progress_end(&progress);
+    if (!status) prom_build_end_progress(b, &progress);
     return status;
 }

@@ -173,6 +173,6 @@ prom_status prom_stage_leaves(prom_build_state *b, prom_error *error)
     prom_progress progress;
     prom_progress_begin(&progress, "leaves", count);
     prom_status status = prom_subjects_run(b, &leaf, NULL, count, &progress, error);
-    if (!status) prom_progress_end(&progress);
+    if (!status) prom_build_end_progress(b, &progress);
     return status;
 }

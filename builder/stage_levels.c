@@ -259,7 +259,7 @@ prom_status prom_stage_levels(prom_build_state *b, prom_error *error)
         *error = job.error;
         return error->status;
     }
-    prom_progress_end(&job.progress);
+    prom_build_end_progress(b, &job.progress);
     b->mean_luminance = in_steps(mean_luminance(b));
     for (size_t i = 0; i < b->source.images.count; i++) { // needed for the baked colours
         prom_texture_finish(&b->textures[i]);

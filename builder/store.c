@@ -54,7 +54,7 @@ static void close_database(prom_store *s)
 // Losing the last units with the power is no harm, so nothing is synced; the rollback journal
 // covers a killed process.
 static const char schema[] =
-    "PRAGMA page_size=16384; PRAGMA auto_vacuum=FULL; PRAGMA journal_mode=TRUNCATE;"
+    "PRAGMA page_size=16384; PRAGMA auto_vacuum=FULL; PRAGMA journal_mode=DELETE;"
     "PRAGMA synchronous=OFF; PRAGMA locking_mode=EXCLUSIVE;"
     "PRAGMA temp_store=MEMORY;"
     "CREATE TABLE IF NOT EXISTS unit(id INTEGER PRIMARY KEY, kind INTEGER NOT NULL,"
@@ -113,6 +113,17 @@ static void unlink_files(const char *path)
     prom_free(journal);
 }
 
+// A database, or the beginning of one; anything else is somebody's file.
+static bool looks_like_a_store(const char *path)
+{
+    static const char magic[16] = "SQLite format 3";
+    char start[16];
+    FILE *f = fopen(path, "rb");
+    size_t n = f ? fread(start, 1, sizeof start, f) : 0;
+    if (f) fclose(f);
+    return f && !memcmp(start, magic, n);
+}
+
 prom_store *prom_store_open(const char *model_path, prom_unit_kind redo, prom_error *error)
 {
     prom_store *s = prom_calloc(1, sizeof *s);
@@ -121,6 +132,13 @@ prom_store *prom_store_open(const char *model_path, prom_unit_kind redo, prom_er
     pthread_mutex_init(&s->lock, NULL);
     if (open_database(s)) return s;
     int rc = s->db ? sqlite3_errcode(s->db) : SQLITE_NOMEM;
+    if (rc == SQLITE_NOTADB && !looks_like_a_store(s->path)) {
+        prom_fail(error, PROM_ERR_OUTPUT,
+                  "%s: is not the work file of a build, which would stand there; rename it",
+                  s->path);
+        prom_store_close(s);
+        return NULL;
+    }
     // Damaged, or of another format: what it held is lost, which costs time only.
     bool replaceable = rc == SQLITE_OK || rc == SQLITE_CORRUPT || rc == SQLITE_NOTADB ||
                        rc == SQLITE_ERROR || rc == SQLITE_ROW || rc == SQLITE_DONE;

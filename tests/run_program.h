@@ -16,7 +16,7 @@ typedef struct program_run {
     char out[65536], err[65536];
 } program_run;
 
-static void slurp(const char *path, char *text, size_t size)
+static inline void slurp(const char *path, char *text, size_t size)
 {
     FILE *file = fopen(path, "rb");
     size_t n = file ? fread(text, 1, size - 1, file) : 0;
@@ -24,7 +24,7 @@ static void slurp(const char *path, char *text, size_t size)
     if (file) fclose(file);
 }
 
-static void redirect(int to, const char *path)
+static inline void redirect(int to, const char *path)
 {
     int file = open(path, O_CREAT | O_TRUNC | O_WRONLY, 0666);
     if (file < 0 || dup2(file, to) < 0) _exit(126);
@@ -33,7 +33,7 @@ static void redirect(int to, const char *path)
 
 // `arguments` is split at spaces. Call it inside a scratch folder: the output passes through
 // files beside that.
-static void run_program(program_run *run, const char *arguments)
+static inline void run_program(program_run *run, const char *arguments)
 {
     static unsigned runs;
     char text[1024], out[64], err[64], *argv[64];
@@ -62,16 +62,16 @@ static void run_program(program_run *run, const char *arguments)
     unlink(err);
 }
 
-static unsigned count_lines(const char *text)
+static inline unsigned count_lines(const char *text)
 {
     unsigned lines = 0;
     for (; *text; text++) lines += *text == '\n';
     return lines;
 }
 
-// Counts (and names on stderr) what a folder holds besides `keep`, a list of names that ends with
-// NULL (NULL: none).
-static unsigned count_others(const char *folder, const char *const *keep)
+// Counts (and names on stderr) what a folder holds besides `keep`, a list of names that ends
+// with NULL (NULL: none).
+static inline unsigned count_others(const char *folder, const char *const *keep)
 {
     DIR *dir = opendir(folder);
     unsigned others = 0;
@@ -86,7 +86,7 @@ static unsigned count_others(const char *folder, const char *const *keep)
 }
 
 // A fresh folder under the working folder, which becomes the working folder.
-static void enter_scratch(void)
+static inline void enter_scratch(void)
 {
     char name[] = "cli-XXXXXX";
     if (!mkdtemp(name) || chdir(name) != 0) {
@@ -95,20 +95,21 @@ static void enter_scratch(void)
     }
 }
 
-static void remove_tree(const char *folder)
+static inline void remove_tree(const char *folder)
 {
     DIR *dir = opendir(folder);
     for (struct dirent *e; dir && (e = readdir(dir));) {
         char path[1024];
         if (!strcmp(e->d_name, ".") || !strcmp(e->d_name, "..")) continue;
-        snprintf(path, sizeof path, "%s/%s", folder, e->d_name);
+        int n = snprintf(path, sizeof path, "%s/%s", folder, e->d_name);
+        if (n < 0 || (size_t)n >= sizeof path) continue;
         if (unlink(path) != 0) remove_tree(path);
     }
     if (dir) closedir(dir);
     rmdir(folder);
 }
 
-static void leave_scratch(void)
+static inline void leave_scratch(void)
 {
     char here[1024];
     if (!getcwd(here, sizeof here) || chdir("..") != 0) return;

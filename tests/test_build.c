@@ -5,6 +5,7 @@
 #include "builder/measure.h"
 #include "metaobj/base/log.h"
 #include "metaobj/container.h"
+#include "obj_street.h"
 #include "traverse/selector.h"
 
 #include <setjmp.h>
@@ -14,31 +15,6 @@
 #include <unistd.h>
 
 #include <cmocka.h>
-
-// A street of boxes: enough things for several clusters, one of them instanced by name only.
-static void write_scene(const char *path)
-{
-    FILE *f = fopen(path, "w");
-    assert_non_null(f);
-    fputs("mtllib missing.mtl\n", f);
-    int base = 1;
-    for (int i = 0; i < 60; i++) {
-        double x = i % 10 * 8.0, z = i / 10 * 8.0, h = 2 + i % 5;
-        fprintf(f, "o house_%d\n", i);
-        for (int v = 0; v < 8; v++)
-            fprintf(f, "v %g %g %g\n", x + (v & 1 ? 3 : 0), v & 2 ? h : 0.0,
-                    z + (v & 4 ? 3 : 0));
-        static const int quads[6][4] = {{1, 3, 4, 2}, {5, 6, 8, 7}, {1, 2, 6, 5},
-                                        {3, 7, 8, 4}, {1, 5, 7, 3}, {2, 4, 8, 6}};
-        for (int q = 0; q < 6; q++) {
-            fputs("f", f);
-            for (int k = 0; k < 4; k++) fprintf(f, " %d", base + quads[q][k] - 1);
-            fputs("\n", f);
-        }
-        base += 8;
-    }
-    fclose(f);
-}
 
 static bool have_gl(void)
 {
@@ -53,11 +29,12 @@ static void same_input_gives_same_content(void **state)
 {
     (void)state;
     if (!have_gl()) skip();
-    write_scene("build_scene.obj");
+    write_street("build_scene.obj", 60, -1, 0);
     prom_build_options options = {.objects = {.min_triangles = 24}};
     uint64_t hashes[2];
     prom_error error = {0};
     for (int i = 0; i < 2; i++) {
+        unlink("build_scene.prom.work");
         prom_build_report report;
         prom_status status =
             prom_build("build_scene.obj", "build_scene.prom", &options, &report, &error);
@@ -80,7 +57,7 @@ static void tables_of_a_built_model_hold(void **state)
 {
     (void)state;
     if (!have_gl()) skip();
-    write_scene("tables_scene.obj");
+    write_street("tables_scene.obj", 60, -1, 0);
     prom_build_options options = {.objects = {.min_triangles = 12}};
     prom_error error = {0};
     assert_int_equal(
@@ -114,6 +91,73 @@ static void tables_of_a_built_model_hold(void **state)
     prom_container_close(c);
 }
 
+static uint64_t content_of(const char *path)
+{
+    prom_error error = {0};
+    uint64_t hash = 0;
+    prom_container *c = prom_container_open(path, &error);
+    if (!c) fail_msg("%s", error.text);
+    assert_int_equal(prom_container_content_hash(c, &hash, &error), PROM_OK);
+    prom_container_close(c);
+    return hash;
+}
+
+static prom_build_report build_street(const prom_build_options *options)
+{
+    prom_build_report report = {0};
+    prom_error error = {0};
+    if (prom_build("units_scene.obj", "units.prom", options, &report, &error))
+        fail_msg("%s", error.text);
+    return report;
+}
+
+// A build takes from the last one what its changes left right, and ends as if made anew.
+static void only_what_depends_on_a_change_is_done_again(void **state)
+{
+    (void)state;
+    if (!have_gl()) skip();
+    prom_build_options options = {.objects = {.min_triangles = 12}};
+    unlink("units.prom.work");
+    write_street("units_scene.obj", 60, -1, 0);
+    prom_build_report first = build_street(&options);
+    assert_int_equal(first.units_taken, 0);
+    uint64_t content = content_of("units.prom");
+
+    prom_build_report again = build_street(&options);
+    assert_int_equal(again.units, first.units);
+    assert_int_equal(again.units_taken, again.units);
+    assert_true(content_of("units.prom") == content);
+
+    // Another tree: the leaves stay.
+    options.tree.max_children = 5;
+    prom_build_report tree = build_street(&options);
+    assert_true(tree.units_taken >= 2 * tree.objects);
+    assert_true(tree.units_taken < tree.units);
+    options.tree.max_children = 0;
+
+    // Another house: its own units and the clusters above it.
+    build_street(&options);
+    write_street("units_scene.obj", 60, 33, 0.5);
+    prom_build_report house = build_street(&options);
+    assert_true(house.units_taken >= 2 * (house.objects - 1));
+    assert_true(house.units_taken < house.units - 2);
+    uint64_t changed = content_of("units.prom");
+    assert_true(changed != content);
+    options.from = PROM_BUILD_FROM_START;
+    assert_int_equal(build_street(&options).units_taken, 0);
+    assert_true(content_of("units.prom") == changed);
+
+    // From a stage on.
+    options.from = PROM_BUILD_FROM_CLUSTERS;
+    prom_build_report from = build_street(&options);
+    assert_int_equal(from.units_taken, 2 * from.objects);
+    options.from = PROM_BUILD_FROM_NOWHERE;
+    options.drop_work = true;
+    assert_int_equal(build_street(&options).units_taken, first.units);
+    assert_int_not_equal(access("units.prom.work", F_OK), 0);
+    assert_true(content_of("units.prom") == changed);
+}
+
 static void bad_input_leaves_nothing(void **state)
 {
     (void)state;
@@ -130,6 +174,7 @@ static void bad_input_leaves_nothing(void **state)
         assert_non_null(strstr(error.text, scenes[i]));
         assert_int_not_equal(access("bad.prom", F_OK), 0);
         assert_int_not_equal(access("bad.prom.part", F_OK), 0);
+        assert_int_not_equal(access("bad.prom.work", F_OK), 0);
     }
 }
 
@@ -195,6 +240,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(accuracy_is_one_for_equal_and_falls_with_difference),
         cmocka_unit_test(same_input_gives_same_content),
+        cmocka_unit_test(only_what_depends_on_a_change_is_done_again),
         cmocka_unit_test(tables_of_a_built_model_hold),
         cmocka_unit_test(bad_input_leaves_nothing),
     };

@@ -342,7 +342,6 @@ static void test_many_prototypes(void **unused)
 
 // ---- the walk
 
-
 static void test_walk(void **unused)
 {
     (void)unused;

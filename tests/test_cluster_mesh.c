@@ -173,8 +173,8 @@ static void checker_is_averaged_by_size(void **state)
         dark += out.vertices[i].color[0] < 20;
         bright += out.vertices[i].color[0] > 235;
     }
-    // A vertex sees half a texel on each side, and filtering another half: of the 8 x 8 vertices
-    // of a check of 4 texels 5 x 5 are that far from its edges.
+    // A vertex sees half a texel on each side, and filtering another half: of the 8 x 8
+    // vertices of a check of 4 texels 5 x 5 are that far from its edges.
     assert_in_range(dark, out.vertex_count / 6, out.vertex_count / 2);
     assert_in_range(bright, out.vertex_count / 6, out.vertex_count / 2);
     prom_mesh_finish(&out);
