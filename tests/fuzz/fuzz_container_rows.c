@@ -10,7 +10,7 @@
 
 #include <sqlite3.h>
 
-const unsigned fuzz_spoilings = 150;
+const unsigned fuzz_spoilings = 60;
 
 #define EDITS_MAX 16
 #define CHUNKS_MAX 64
