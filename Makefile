@@ -4,11 +4,13 @@
 #   make demo       build, make a city, walk it, leave pictures and a report in out/demo
 #   make test       the tests, optimised and under the sanitizers
 #   make test-all   the slow ones too
+#   make fuzz       search for inputs that break a parser, FUZZ_SECONDS (60) for each
 #   make bench      tables of builds and frame times in out/bench; see tests/bench/run.sh
 
 JOBS ?= $(shell nproc)
+FUZZ_SECONDS ?= 60
 
-.PHONY: all build deps demo test test-all bench format tidy clean
+.PHONY: all build deps demo test test-all fuzz bench format tidy clean
 
 all: build
 
@@ -27,6 +29,9 @@ test: deps
 
 test-all: deps
 	@scripts/test.sh
+
+fuzz: deps
+	@tests/fuzz/run.sh $(FUZZ_SECONDS)
 
 bench: build
 	@scripts/install-deps.sh bench

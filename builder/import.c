@@ -248,6 +248,7 @@ prom_status prom_source_import(const char *path, const prom_import_options *opti
                          path);
     if (!S_ISREG(info.st_mode))
         return prom_fail(error, PROM_ERR_INPUT, "%s: is no regular file", path);
+    if (!info.st_size) return prom_fail(error, PROM_ERR_INPUT, "%s: is empty", path);
     if (access(path, R_OK))
         return prom_fail(error, PROM_ERR_INPUT, "%s: %s", path, strerror(errno));
     prom_status status = run(path, &o, source, error);

@@ -177,6 +177,9 @@ prom_status prom_gltf_read(prom_import *import, prom_gltf *gltf, prom_error *err
     // Either ending may stand for either form.
     gltf->glb = text.bytes >= 4 && !memcmp(text.data, "glTF", 4);
     if (gltf->glb && text.bytes >= 8 && little32(text.data + 4) == 1) return PROM_OK;
+    if (!gltf->glb && !strcasecmp(dot, ".glb") && !memchr(text.data, '{', text.bytes))
+        return prom_fail(error, PROM_ERR_INPUT,
+                         "%s: is no GLB file: it does not start with \"glTF\"", path);
     if (gltf->glb) {
         text = (chunk){0};
         status = open_glb(path, gltf, &text, error);

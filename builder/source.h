@@ -56,7 +56,7 @@ typedef enum prom_up_axis {
 
 typedef struct prom_import_options {
     uint32_t max_texture_px; // pictures are reduced to this; 0: 1024
-    uint64_t memory_bytes;   // address space of the child; 0: 8 GiB
+    uint64_t memory_bytes;   // address space of each process that reads; 0: 8 GiB
     uint32_t time_s;         // processor time of the child; 0: 300
     prom_up_axis up;
     double unit_m; // metres that a unit of the file stands for; 0: what it says, or 1

@@ -33,6 +33,7 @@ static void source_finish(prom_source *s)
     prom_array_finish(&s->meshes);
     prom_array_finish(&s->nodes);
     prom_array_finish(&s->mesh_refs);
+    prom_array_finish(&s->levels);
     prom_array_finish(&s->materials);
 }
 
@@ -644,6 +645,90 @@ static void tiles_are_groups(void **state)
     source_finish(&s);
 }
 
+// ---- levels by the scene's artist
+
+// Gives the last node a level of one mesh; levels come in order, right after the node.
+static void add_level(prom_source *s, uint32_t mesh, float own_until, float until)
+{
+    prom_source_node *n = &s->nodes.data[s->nodes.count - 1];
+    if (!n->level_count) n->first_level = (uint32_t)s->levels.count;
+    n->level_count++;
+    n->until = own_until;
+    prom_array_push(&s->levels, (prom_source_level){(uint32_t)s->mesh_refs.count, 1, until});
+    prom_array_push(&s->mesh_refs, mesh);
+}
+
+static void what_has_levels_stays_whole(void **state)
+{
+    (void)state;
+    prom_source s;
+    source_init(&s);
+    uint32_t root = add_root(&s), field = add_field(&s, 64, 1, OPAQUE);
+    uint32_t box = add_box(&s, (float[3]){0, 0, 0}, 1, OPAQUE);
+    // More triangles than an object may have, and alone of its kind; and two that differ in
+    // where they switch alone.
+    add_at(&s, root, field, 0, 0);
+    add_level(&s, box, 50, INFINITY);
+    for (int i = 0; i < 3; i++) {
+        add_at(&s, root, box, 10 + 5 * i, 0);
+        add_level(&s, field, i == 2 ? 30 : 20, 80);
+        add_level(&s, box, i == 2 ? 30 : 20, 200);
+    }
+    prom_objects o;
+    find(&s, &o);
+    assert_int_equal(o.objects.count, 4);
+    assert_int_equal(o.shapes.count, 3);
+    uint32_t shared = 0;
+    for (size_t i = 0; i < 4; i++) {
+        const prom_shape *shape = shape_of(&o, i);
+        bool large = shape->mesh.index_count == 3 * 2 * 64 * 64;
+        assert_int_equal(shape->level_count, large ? 1 : 2);
+        float until = large ? 50 : shape->instances == 2 ? 20 : 30;
+        assert_float_equal(shape->until, until, 0);
+        assert_int_equal(shape->levels[0].mesh.index_count, large ? 36 : 3 * 2 * 64 * 64);
+        shared += shape->instances == 2;
+        for (int k = 0; k < 3; k++) // the box is wider than the field: it is inside the bounds
+            assert_true(shape->bounds.min[k] <= -1 && shape->bounds.max[k] >= 1);
+    }
+    assert_int_equal(shared, 2);
+    prom_objects_finish(&o);
+    source_finish(&s);
+}
+
+static void levels_are_split_like_their_node(void **state)
+{
+    (void)state;
+    prom_source s;
+    source_init(&s);
+    uint32_t root = add_root(&s);
+    uint32_t wall = add_box(&s, (float[3]){0, 0, 0}, 1, OPAQUE);
+    uint32_t pane = add_box(&s, (float[3]){0, 0, 2}, 0.5f, SEE_THROUGH);
+    uint32_t low = add_box(&s, (float[3]){0, 0, 0}, 1, OTHER);
+    double m[16];
+    pose(m, 0, 0, 0, 0, 1, 2, 1); // stretched: so is the level
+    add_node(&s, root, m, (uint32_t[2]){wall, pane}, 2, "house");
+    add_level(&s, low, 40, 90);
+    prom_objects o;
+    find(&s, &o);
+    assert_int_equal(o.objects.count, 2);
+    for (size_t i = 0; i < 2; i++) {
+        const prom_shape *shape = shape_of(&o, i);
+        bool glass = shape->layer == PROM_LAYER_BLENDED;
+        assert_int_equal(shape->level_count, glass ? 0 : 1);
+        if (glass) {
+            assert_true(isinf(shape->until));
+            continue;
+        }
+        assert_int_equal(shape->levels[0].mesh.submeshes[0].material, OTHER);
+        prom_box fine = prom_mesh_bounds(&shape->mesh);
+        prom_box coarse = prom_mesh_bounds(&shape->levels[0].mesh);
+        assert_memory_equal(&fine, &coarse, sizeof fine);
+    }
+    assert_int_equal(count_layer(&o, PROM_LAYER_BLENDED), 1);
+    prom_objects_finish(&o);
+    source_finish(&s);
+}
+
 // ---- odd input
 
 static void odd_nodes_are_left_out(void **state)
@@ -727,6 +812,8 @@ int main(void)
         cmocka_unit_test(sprawling_mesh_is_split),
         cmocka_unit_test(lone_model_is_kept_or_cut),
         cmocka_unit_test(tiles_are_groups),
+        cmocka_unit_test(what_has_levels_stays_whole),
+        cmocka_unit_test(levels_are_split_like_their_node),
         cmocka_unit_test(odd_nodes_are_left_out),
         cmocka_unit_test(same_input_same_objects),
     };
