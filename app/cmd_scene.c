@@ -1,9 +1,10 @@
-// promenade scene: makes scenes, a generated city or a repeated scene.
+// promenade scene: makes scenes, a generated city or gallery, or a repeated scene.
 #include "app/command.h"
 #include "app/options.h"
 #include "app/output.h"
 
 #include "scenes/city.h"
+#include "scenes/gallery.h"
 #include "scenes/tile.h"
 
 #include <inttypes.h>
@@ -19,7 +20,17 @@ typedef struct city_options {
     const char *output, *path;
 } city_options;
 
-enum { KEY_SEED = 0x1000, KEY_SIZE, KEY_DETAIL, KEY_STYLES, KEY_PATH, KEY_GRID, KEY_SPACING };
+enum {
+    KEY_SEED = 0x1000,
+    KEY_SIZE,
+    KEY_DETAIL,
+    KEY_STYLES,
+    KEY_PATH,
+    KEY_GRID,
+    KEY_SPACING,
+    KEY_ROOMS,
+    KEY_ROOFLESS,
+};
 
 static const struct argp_option city_table[] = {
     {"output", 'o', "FILE", 0, "The scene to write (X.glb)", 0},
@@ -84,6 +95,86 @@ static prom_status run_city(int argc, char **argv, prom_error *error)
     if (status) return status;
     printf("%s: %" PRIu64 " triangles\n", o.output, triangles);
     if (o.path) printf("%s: a walk through it\n", o.path);
+    return PROM_OK;
+}
+
+// ---- gallery
+
+typedef struct gallery_options {
+    prom_gallery_options gallery;
+    const char *output, *path;
+} gallery_options;
+
+static const struct argp_option gallery_table[] = {
+    {"output", 'o', "FILE", 0, "The scene to write (X.glb)", 0},
+    {"path", KEY_PATH, "FILE", 0, "Also write a walk through its rooms, up and down its stairs",
+     0},
+    {"seed", KEY_SEED, "N", 0, "Another number gives another gallery (1)", 0},
+    {"rooms", KEY_ROOMS, "N", 0, "At least so many rooms, 17 to 2000 (24)", 0},
+    {"detail", KEY_DETAIL, "1..4", 0,
+     "From plain to rich; each step has about four times the triangles (2)", 0},
+    {"roofless", KEY_ROOFLESS, NULL, 0, "Leave out ceilings and roofs, to look in from above",
+     0},
+    {0},
+};
+
+static error_t parse_gallery(int key, char *text, struct argp_state *state)
+{
+    gallery_options *o = state->input;
+    switch (key) {
+    case 'o':
+        o->output = text;
+        break;
+    case KEY_PATH:
+        o->path = text;
+        break;
+    case KEY_SEED:
+        o->gallery.seed = prom_option_whole(state, "--seed", text, 0, UINT64_MAX);
+        break;
+    case KEY_ROOMS:
+        o->gallery.rooms = (uint32_t)prom_option_whole(
+            state, "--rooms", text, PROM_GALLERY_ROOMS_MIN, PROM_GALLERY_ROOMS_MAX);
+        break;
+    case KEY_DETAIL:
+        o->gallery.detail =
+            (uint32_t)prom_option_whole(state, "--detail", text, 1, PROM_GALLERY_DETAIL_MAX);
+        break;
+    case KEY_ROOFLESS:
+        o->gallery.roofless = true;
+        break;
+    case ARGP_KEY_ARG:
+        argp_error(state, "`%s` is one argument too many", text);
+        break;
+    case ARGP_KEY_END:
+        prom_option_require(state, "--output", o->output);
+        break;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+    return 0;
+}
+
+static const struct argp gallery_argp = {
+    .options = gallery_table,
+    .parser = parse_gallery,
+    .doc =
+        "Generate a gallery: rooms with pictures, sculptures, vitrines and furniture around a "
+        "hall and a rotunda, on two storeys.\v"
+        "The same seed, rooms and detail give the same gallery.",
+    .children = children,
+};
+
+static prom_status run_gallery(int argc, char **argv, prom_error *error)
+{
+    gallery_options o = {.gallery = {.seed = 1}};
+    argp_parse(&gallery_argp, argc, argv, 0, NULL, &o);
+    prom_command_files files = {.outputs = {&o.output, &o.path}};
+    prom_status status = prom_outputs_check(&files, error);
+    prom_gallery_facts facts = {0};
+    if (!status) status = prom_gallery_write(o.output, o.path, &o.gallery, &facts, error);
+    if (status) return status;
+    printf("%s: %" PRIu64 " triangles in %u rooms\n", o.output, facts.triangles, facts.rooms);
+    if (o.path) printf("%s: a walk of %u frames through it\n", o.path, facts.walk_keys);
     return PROM_OK;
 }
 
@@ -168,7 +259,8 @@ prom_status prom_command_scene(int argc, char **argv, prom_error *error)
 {
     static const prom_command commands[] = {
         {"city", "-o X.glb", "generate a city", run_city},
+        {"gallery", "-o X.glb", "generate a gallery", run_gallery},
         {"tile", "SCENE -o X.glb", "repeat a scene on a grid", run_tile},
     };
-    return prom_command_dispatch("promenade scene", commands, 2, argc, argv, error);
+    return prom_command_dispatch("promenade scene", commands, 3, argc, argv, error);
 }
