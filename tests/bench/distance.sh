@@ -15,6 +15,7 @@
 # time: doubled or halved until the time is passed, then by bisection, until both are within 3 %
 # in runs one after the other, whose figures are the rows. Where no factor does (within
 # 1/64 to 64), the nearest is kept, and `ratio` says how far off it is.
+# It measures times, so nothing else should keep the machine busy.
 # Reports stay in FOLDER; FOLDER/distance.md is the table, also printed.
 set -eu
 frames=300
@@ -23,7 +24,7 @@ sizes="1280,720 640,360"
 percents="130 100"
 budgets=""
 usage() {
-    sed -n '2,21s/^# \{0,1\}//p' "$0" >&2
+    sed -n '2,22s/^# \{0,1\}//p' "$0" >&2
     exit 1
 }
 while getopts f:a:s:b:m: option; do
@@ -91,8 +92,8 @@ find_scale() {
             if holds "$high <= 1 / 64"; then limit=yes && return; fi
             scale=$(calc "$high / 2 > 1 / 64 ? $high / 2 : 1 / 64")
         else
-            # Noise may have put both on one side; there is nothing more to find between them.
-            if holds "$high / $low < 1.01"; then return; fi
+            # Noise has put one on the wrong side: there is nothing to find between them.
+            if holds "$high / $low < 1.03"; then return; fi
             scale=$(calc "sqrt($low * $high)")
         fi
     done

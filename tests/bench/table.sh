@@ -34,13 +34,13 @@ out=$2
 shift 2
 mkdir -p "$out"
 
-# bench NAME MODEL PATH SIZE SELECTOR BUDGET FRAMES HOLES: one run, kept as NAME.json, NAME.csv
+# bench NAME MODEL PATH SIZE SELECTOR BUDGET FRAMES COMPARED: one run, kept as NAME.json, NAME.csv
 # and NAME.txt.
 bench() {
     echo "$1: $7 frames" >&2
     "$program" bench "$2" --path "$3" --resolution "$4" --selector "$5" --budget-ms "$6" \
-        --frames "$7" --check-holes "$8" --report "$out/$1.json" --csv "$out/$1.csv" \
-        --quiet > "$out/$1.txt"
+        --frames "$7" --check-holes "$8" --check-accuracy "$8" \
+        --report "$out/$1.json" --csv "$out/$1.csv" --quiet > "$out/$1.txt"
 }
 
 # row NAME SCENE SIZE BUDGET: one row of the table from a report. Misses are counted in the rows of
@@ -56,6 +56,7 @@ row() {
         "\($misses) | \(.frame_ms.mean / $b * 100 | round) | \(.triangles.mean | round) | " +
         "\(.select_ms.mean | r(2)) | \(.cut_nodes.mean | round) | " +
         "\(if .holes then .holes.mean * 100 | r(3) else "-" end) | " +
+        "\(if .accuracy then .accuracy.mean * 100 | r(2) else "-" end) | " +
         "\(if .least_budget_ms then .least_budget_ms | r(1) else "" end) |"' "$out/$1.json"
 }
 
@@ -84,9 +85,9 @@ walk() {
 
 {
     echo "| scene | size | budget ms | selector | mean ms | p50 | p95 | max | misses % | use % |" \
-        "triangles | select ms | nodes | holes % | least ms |"
+        "triangles | select ms | nodes | holes % | accuracy % | least ms |"
     echo "| --- | --- | ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |" \
-        "---: | ---: | ---: |"
+        "---: | ---: | ---: | ---: |"
     for pair in "$@"; do
         scene=$(basename "${pair%:*}" .prom)
         [ "${pair##*:}" = auto ] || scene=$scene/$(basename "${pair##*:}" .path)
