@@ -139,11 +139,13 @@ static void write_table(FILE *f)
     for (size_t i = 0; i < corpus.rows.count; i++)
         for (int k = 0; k < KINDS; k++)
             counts[k] += !strcmp(corpus.rows.data[i].kind, kind_order[k]);
-    fprintf(f,
-            "# Broken and edge-case files: what becomes of them\n\n"
-            "Written by `test_import_corpus`, which tries every file of its corpus with 2 GiB "
-            "and 20 s of\nprocessor time. Each ends with a scene or with one line that names "
-            "the file.\n\n| outcome | files |\n| --- | ---: |\n");
+    fprintf(
+        f,
+        "# Broken and edge-case files: what becomes of them\n\n"
+        "Written by `test_import_corpus`, which tries every file of its corpus with 2 GiB "
+        "and 20 s of\nprocessor time. Each ends with a scene or with one line that names "
+        "the file. Where a loader reads\nbeyond the data of a damaged file, its end may differ "
+        "from run to run.\n\n| outcome | files |\n| --- | ---: |\n");
     for (int k = 0; k < KINDS; k++)
         if (counts[k]) fprintf(f, "| %s | %u |\n", kind_order[k], counts[k]);
     for (int k = 0; k < KINDS; k++) {
