@@ -89,8 +89,11 @@ static void make_model(prom_model *m, const prom_mesh meshes[3])
         prom_box_center(&box, p->center);
         prom_box_half(&box, p->half);
         m->meshes[i] = (prom_mesh_info){meshes[i].vertex_count, meshes[i].index_count, 1};
-        m->reps[i] = (prom_representation){
-            .mesh = i, .texture = PROM_NONE, .max_size_px = INFINITY, .draws = 1};
+        m->reps[i] = (prom_representation){.switch_distance = INFINITY,
+                                           .mesh = i,
+                                           .texture = PROM_NONE,
+                                           .max_size_px = INFINITY,
+                                           .draws = 1};
     }
     m->prototypes[3] =
         (prom_prototype){.first_rep = 3, .flags = PROM_PROTO_CLUSTER, .child_count = LEAVES};

@@ -69,11 +69,12 @@ static double number(json_t *json, const char *path)
     return json_number_value(value);
 }
 
-static void the_build_leaves_one_file(void **state)
+static void the_build_leaves_the_model_and_its_work(void **state)
 {
     (void)state;
     NEED_DEVICE();
-    const char *const made[] = {"city.glb", "city.path", "city.prom", "p.json", NULL};
+    const char *const made[] = {"city.glb",       "city.path", "city.prom",
+                                "city.prom.work", "p.json",    NULL};
     assert_int_equal(count_others(".", made), 0);
     assert_true(size_of("city.prom") > 0);
 }
@@ -115,8 +116,9 @@ static void shots_are_written(void **state)
     assert_true(size_of("b.png") > 200);
     expect("shot city.prom --wireframe -o c.png" SMALL, 0);
     assert_true(size_of("c.png") > 200);
-    const char *const made[] = {"city.glb", "city.path", "city.prom", "p.json",
-                                "a.png",    "b.png",     "c.png",     NULL};
+    const char *const made[] = {"city.glb",       "city.path", "city.prom",
+                                "city.prom.work", "p.json",    "a.png",
+                                "b.png",          "c.png",     NULL};
     assert_int_equal(count_others(".", made), 0);
 }
 
@@ -389,7 +391,7 @@ static void the_strict_octree_builds(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_build_leaves_one_file),
+        cmocka_unit_test(the_build_leaves_the_model_and_its_work),
         cmocka_unit_test(info_tells_what_was_built),
         cmocka_unit_test(shots_are_written),
         cmocka_unit_test(shots_end_with_the_path),

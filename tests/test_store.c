@@ -116,7 +116,7 @@ static void damage_costs_units_and_nothing_else(void **state)
     fclose(f);
     assert_in_range(size, 1000, sizeof whole - 1);
     unsigned lost = 0;
-    for (size_t at = 61; at < size; at += 61) {
+    for (size_t at = 61; at < size; at += 211) {
         f = fopen(WORK, "wb");
         whole[at] ^= 0x55;
         fwrite(whole, 1, at % 3 ? size : at, f); // changed, or cut short
