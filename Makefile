@@ -1,7 +1,8 @@
 # The front door. CMake does the work; the presets in CMakePresets.json say how.
 #
 #   make            build the program: build/release/app/promenade
-#   make demo       build, make a city, walk it, leave pictures and a report in out/demo
+#   make demo       build, make a city, walk it, leave pictures and a report in out/demo;
+#                   where there is a display, open the viewer
 #   make test       the tests, optimised and under the sanitizers
 #   make test-all   the slow ones too
 #   make fuzz       search for inputs that break a parser, FUZZ_SECONDS (60) for each
@@ -25,9 +26,11 @@ demo: build
 	@scripts/demo.sh build/release/app/promenade out/demo
 
 test: deps
+	@scripts/install-deps.sh test
 	@scripts/test.sh -LE slow
 
 test-all: deps
+	@scripts/install-deps.sh test
 	@scripts/test.sh
 
 fuzz: deps

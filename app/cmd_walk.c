@@ -28,7 +28,7 @@ static const struct argp_option options[] = {
      "End after N frames, drawn without rests; with --play one for each key of the path, as "
      "`bench` does",
      1},
-    {"shot", KEY_SHOT, "FILE", 0, "At the end write what the window shows (PNG)", 1},
+    {"shot", KEY_SHOT, "FILE", 0, "At the end write the last picture (PNG)", 1},
     {0},
 };
 
@@ -123,8 +123,7 @@ static prom_status walk(walk_options *o, prom_error *error)
         prom_log(PROM_LOG_INFO, "W A S D, mouse after a click, Shift, P plays the path, Esc "
                                 "ends; `promenade walk --help` tells the other keys");
         status = prom_walk_run(&session, o->window, &o->walk, &result, error);
-        if (!status && o->shot)
-            status = prom_walk_write_png(&session, o->window, o->shot, error);
+        if (!status && o->shot) status = prom_session_write_png(&session, o->shot, error);
         if (!status) report(o, &result);
         prom_session_close(&session);
     }

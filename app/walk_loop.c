@@ -3,9 +3,8 @@
 #include "app/frame_step.h"
 #include "app/walk_motion.h"
 #include "app/walk_path.h"
+#include "app/walk_size.h"
 #include "app/walk_title.h"
-#include "builder/image_io.h"
-#include "metaobj/base/alloc.h"
 #include "metaobj/base/clock.h"
 #include "metaobj/base/log.h"
 
@@ -15,7 +14,7 @@
 #include <unistd.h>
 
 // A picture at rest is drawn again until what the governor knows is of this view only.
-#define SETTLE_FRAMES PROM_GOVERNOR_FRAMES
+#define SETTLE_FRAMES (PROM_GOVERNOR_FRAMES + 1)
 #define REST_WAIT_S 0.25
 // The step after a rest: the time before it was no walking.
 #define FIRST_STEP_S (1.0 / 60)
@@ -69,7 +68,7 @@ static prom_status write_next_shot(walk *w, prom_error *error)
     for (unsigned i = 1; i <= MOST_SHOTS; i++) {
         snprintf(path, sizeof path, "promenade-%04u.png", i);
         if (access(path, F_OK) == 0) continue;
-        prom_status status = prom_walk_write_png(w->session, w->window, path, error);
+        prom_status status = prom_session_write_png(w->session, path, error);
         if (!status) prom_log(PROM_LOG_INFO, "%s: what the window shows", path);
         return status;
     }
@@ -212,11 +211,9 @@ static void warm_up(walk *w)
 
 static void begin(walk *w)
 {
-    const prom_model *model = &w->session->model;
-    double size = 2 * (double)model->radius[0];
     w->camera = w->session->camera;
     prom_path_pose(&w->session->path, 0, &w->camera);
-    prom_walk_init(&w->motion, &w->camera, size > 0 ? size : 1);
+    prom_walk_init(&w->motion, &w->camera, prom_walk_size(&w->session->model));
     w->on_path = true;
     w->playing = w->options->play;
     warm_up(w);
@@ -242,21 +239,6 @@ prom_status prom_walk_run(prom_session *session, prom_window *window,
     }
     result->camera = w.camera;
     prom_frame_step_finish(&w.step);
-    return status;
-}
-
-// ---- pictures
-
-prom_status prom_walk_write_png(prom_session *session, prom_window *window, const char *path,
-                                prom_error *error)
-{
-    uint32_t size[2];
-    prom_window_size(window, size);
-    if (!size[0] || !size[1]) return prom_session_write_png(session, path, error);
-    uint8_t *rgb = prom_alloc((size_t)size[0] * size[1], 3);
-    prom_window_read_rgb(window, session->target, rgb);
-    prom_status status = prom_image_write_png(path, size[0], size[1], 3, rgb, error);
-    prom_free(rgb);
     return status;
 }
 

@@ -21,13 +21,10 @@ typedef struct prom_walk_result {
 } prom_walk_result;
 
 // Walks from the start of the session's path until the user ends it. The session draws for this
-// window.
+// window; its target keeps the last frame's picture.
 prom_status prom_walk_run(prom_session *session, prom_window *window,
                           const prom_walk_options *options, prom_walk_result *result,
                           prom_error *error);
-// Writes what the window shows as a PNG.
-prom_status prom_walk_write_png(prom_session *session, prom_window *window, const char *path,
-                                prom_error *error);
 // A point that the camera looks at: for `shot --look-at`.
 void prom_walk_look_at(const prom_camera *camera, double point[3]);
 

@@ -29,7 +29,7 @@ static void compose(const prom_walk_title *t, const prom_walk_title_facts *f,
     char triangles[16];
     write_count(t->told_triangles, triangles);
     snprintf(text, PROM_WALK_TITLE_BYTES,
-             "%s | %.1f of %g ms%s | misses %llu of %llu (%.1f %%) | %s | %s triangles%s%s",
+             "%.80s | %.1f of %g ms%s | misses %llu of %llu (%.1f %%) | %s | %s triangles%s%s",
              f->name, t->told_ms, f->budget_ms, f->at_rest ? ", at rest" : "",
              (unsigned long long)t->misses, (unsigned long long)t->all,
              t->all ? 100.0 * (double)t->misses / (double)t->all : 0, f->selector, triangles,

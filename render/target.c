@@ -93,9 +93,9 @@ void prom_target_clear(prom_target *target, const uint8_t rgba[4])
     if (target->has_ids) glClearBufferuiv(GL_COLOR, 1, none);
 }
 
-void target_flip_rows(void *pixels, uint32_t width, uint32_t height, uint32_t pixel_bytes)
+static void flip_rows(void *pixels, uint32_t width, uint32_t height)
 {
-    size_t row = (size_t)width * pixel_bytes;
+    size_t row = (size_t)width * 4;
     char *top = pixels, *bottom = top + row * (height - 1);
     char swap[1024];
     for (; top < bottom; top += row, bottom -= row)
@@ -116,7 +116,7 @@ static void read_pixels(prom_target *t, GLenum attachment, GLenum format, GLenum
     glNamedFramebufferReadBuffer(t->framebuffer, attachment);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, t->framebuffer);
     glReadPixels((GLint)x, (GLint)y, (GLsizei)width, (GLsizei)height, format, type, pixels);
-    target_flip_rows(pixels, width, height, 4);
+    flip_rows(pixels, width, height);
 }
 
 void prom_target_read_rgba(prom_target *target, uint32_t x, uint32_t y, uint32_t width,

@@ -15,7 +15,4 @@ struct prom_target {
     GLuint framebuffer, plain; // the same framebuffer without ids
 };
 
-// Turns a picture upside down: GL's first row is the bottom one.
-void target_flip_rows(void *pixels, uint32_t width, uint32_t height, uint32_t pixel_bytes);
-
 #endif

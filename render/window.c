@@ -231,16 +231,20 @@ void prom_window_set_title(prom_window *window, const char *title)
 
 // ---- showing pictures
 
+// Binds the window's buffer rather than naming it: Mesa asks for a window's size only when its
+// buffer is bound.
 static void copy_to_back(prom_window *w, const prom_target *t, const uint32_t size[2])
 {
     GLenum filter = t->width == size[0] && t->height == size[1] ? GL_NEAREST : GL_LINEAR;
-    glNamedFramebufferReadBuffer(t->plain, GL_COLOR_ATTACHMENT0);
-    glBlitNamedFramebuffer(t->plain, 0, 0, 0, (GLint)t->width, (GLint)t->height, 0, 0,
-                           (GLint)size[0], (GLint)size[1], GL_COLOR_BUFFER_BIT, filter);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, t->plain);
+    glReadBuffer(GL_COLOR_ATTACHMENT0);
+    glBlitFramebuffer(0, 0, (GLint)t->width, (GLint)t->height, 0, 0, (GLint)size[0],
+                      (GLint)size[1], GL_COLOR_BUFFER_BIT, filter);
     if (!w->has_alpha) return;
     const GLfloat opaque[4] = {0, 0, 0, 1};
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
-    glClearNamedFramebufferfv(0, GL_COLOR, 0, opaque);
+    glClearBufferfv(GL_COLOR, 0, opaque);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
@@ -252,18 +256,4 @@ void prom_window_present(prom_window *window, prom_target *target)
     copy_to_back(window, target, size);
     glfwSwapBuffers(window->handle);
     glFinish();
-}
-
-void prom_window_read_rgb(prom_window *window, prom_target *target, uint8_t *rgb)
-{
-    uint32_t size[2];
-    prom_window_size(window, size);
-    if (!size[0] || !size[1]) return;
-    copy_to_back(window, target, size);
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
-    glReadBuffer(GL_BACK);
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glReadPixels(0, 0, (GLsizei)size[0], (GLsizei)size[1], GL_RGB, GL_UNSIGNED_BYTE, rgb);
-    glPixelStorei(GL_PACK_ALIGNMENT, 4);
-    target_flip_rows(rgb, size[0], size[1], 3);
 }

@@ -67,8 +67,5 @@ void prom_window_poll(prom_window *window, double wait_s, prom_window_input *inp
 // Shows a target's picture, scaled where the sizes differ (the window may just have changed
 // its), and waits until it is handed over, so that no later frame pays for it.
 void prom_window_present(prom_window *window, prom_target *target);
-// Reads what the window shows of a target, first row on top. rgb: 3 bytes a pixel of
-// prom_window_size, sRGB-encoded.
-void prom_window_read_rgb(prom_window *window, prom_target *target, uint8_t *rgb);
 
 #endif

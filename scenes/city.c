@@ -26,32 +26,6 @@ static uint32_t at_least(uint32_t value, uint32_t least)
     return value > least ? value : least;
 }
 
-static void list_prototypes(prom_city *city)
-{
-    uint32_t styles = city->options.styles;
-    const uint32_t counts[PROM_CITY_KIND_COUNT] = {
-        [PROM_CITY_HOUSE] = styles,
-        [PROM_CITY_TREE] = at_least(styles / 4, 6),
-        [PROM_CITY_STREET_TREE] = at_least(styles / 4, 6),
-        [PROM_CITY_SHRUB] = at_least(styles / 12, 2),
-        [PROM_CITY_LAMP] = 2,
-        [PROM_CITY_BENCH] = 3,
-        [PROM_CITY_CAR] = 8,
-        [PROM_CITY_BIN] = 1,
-        [PROM_CITY_FOUNTAIN] = 1,
-        [PROM_CITY_STALL] = 4,
-    };
-    for (prom_city_kind kind = 0; kind < PROM_CITY_KIND_COUNT; kind++) {
-        city->first[kind] = (uint32_t)city->prototypes.count;
-        for (uint32_t i = 0; i < counts[kind]; i++) {
-            prom_city_prototype p = {.kind = kind, .number = i, .mesh = PROM_GLB_NONE};
-            if (kind == PROM_CITY_HOUSE) prom_city_measure_house(city, &p);
-            prom_array_push(&city->prototypes, p);
-        }
-    }
-    city->first[PROM_CITY_KIND_COUNT] = (uint32_t)city->prototypes.count;
-}
-
 static void init(prom_city *city, const prom_city_options *options, const char *glb_path)
 {
     *city = (prom_city){.options = *options, .glb = prom_glb_create(glb_path)};
@@ -61,7 +35,7 @@ static void init(prom_city *city, const prom_city_options *options, const char *
     if (!city->options.styles) city->options.styles = 12 * city->options.detail;
     city->options.styles = at_least(city->options.styles, 3);
     for (int i = 0; i < PROM_CITY_TEXTURE_COUNT; i++) city->images[i] = PROM_GLB_NONE;
-    list_prototypes(city);
+    prom_city_list_prototypes(city);
 }
 
 static void finish(prom_city *city)
@@ -72,13 +46,29 @@ static void finish(prom_city *city)
     prom_array_finish(&city->grounds);
 }
 
-static prom_status write_walk(const char *file, const prom_city_plan *plan, prom_error *error)
+typedef void (*way_maker)(const prom_city_plan *plan, prom_path *path);
+
+static prom_status write_way(const char *file, const prom_city_plan *plan, way_maker make,
+                             const char *title, prom_error *error)
 {
     prom_path path = {0};
-    prom_city_walk(plan, &path);
-    prom_status status =
-        prom_path_save(file, &path, "generated city, along the streets", error);
+    make(plan, &path);
+    prom_status status = prom_path_save(file, &path, title, error);
     prom_path_finish(&path);
+    return status;
+}
+
+static prom_status write_ways(const char *walk, const char *flight, const prom_city_plan *plan,
+                              prom_error *error)
+{
+    prom_status status = PROM_OK;
+    if (walk)
+        status = write_way(walk, plan, prom_city_walk, "generated city, on the ground", error);
+    if (!status && flight) {
+        status =
+            write_way(flight, plan, prom_city_flight, "generated city, from the air", error);
+        if (status && walk) unlink(walk);
+    }
     return status;
 }
 
@@ -97,9 +87,9 @@ prom_status prom_city_write(const char *glb_path, const char *path_file,
         status = prom_fail(error, city.error.status, "%s", city.error.text);
     else
         status = prom_glb_finish(city.glb, "promenade city", error);
-    if (!status && path_file) {
-        status = write_walk(path_file, &plan, error);
-        if (status) unlink(glb_path); // both or none
+    if (!status) {
+        status = write_ways(path_file, options->flight_file, &plan, error);
+        if (status) unlink(glb_path); // all or none
     }
     if (!status && triangles) *triangles = prom_glb_triangles(city.glb);
     prom_city_plan_finish(&plan);

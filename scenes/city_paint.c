@@ -51,3 +51,15 @@ prom_paint prom_city_paint(prom_city *city, prom_city_texture texture, uint32_t 
     prom_array_push(&city->paints, (prom_city_paint_record){texture, rgb, id});
     return (prom_paint){id, repeat};
 }
+
+prom_paint prom_city_plain(prom_city *city, uint32_t rgb)
+{
+    return prom_city_paint(city, PROM_CITY_PLAIN, rgb, 1);
+}
+
+int prom_city_sides(const prom_city *city, int at_two)
+{
+    static const float factor[5] = {1, 0.5f, 1, 1.6f, 2.5f};
+    int sides = (int)((float)at_two * factor[city->options.detail]);
+    return sides < 3 ? 3 : sides;
+}

@@ -1,78 +1,10 @@
 #include "scenes/city_texture.h"
 
-#include "scenes/random.h"
+#include "scenes/city_color.h"
 
-#include <math.h>
 #include <string.h>
 
-#define PI 3.14159265f
-
-typedef struct color {
-    float r, g, b, a;
-} color;
-
 typedef color (*shader)(float x, float y); // picture coordinates in [0,1), y down
-
-// ---- noise
-
-static float cell_random(int x, int y, uint32_t seed)
-{
-    uint64_t h = prom_random_mix(((uint64_t)(uint32_t)x << 32 | (uint32_t)y) +
-                                 seed * 0x9e3779b97f4a7c15u);
-    return (float)(h >> 40) * 0x1p-24f;
-}
-
-static int wrap(int i, int period)
-{
-    return ((i % period) + period) % period;
-}
-
-// Value noise that repeats after `period` cells; in [0,1].
-static float noise(float x, float y, int period, uint32_t seed)
-{
-    x *= (float)period;
-    y *= (float)period;
-    int ix = (int)floorf(x), iy = (int)floorf(y);
-    float fx = x - (float)ix, fy = y - (float)iy;
-    fx = fx * fx * (3 - 2 * fx);
-    fy = fy * fy * (3 - 2 * fy);
-    int x0 = wrap(ix, period), x1 = wrap(ix + 1, period);
-    int y0 = wrap(iy, period), y1 = wrap(iy + 1, period);
-    float low = cell_random(x0, y0, seed) * (1 - fx) + cell_random(x1, y0, seed) * fx;
-    float high = cell_random(x0, y1, seed) * (1 - fx) + cell_random(x1, y1, seed) * fx;
-    return low * (1 - fy) + high * fy;
-}
-
-// Three octaves around 0, about [-1,1].
-static float rough(float x, float y, int period, uint32_t seed)
-{
-    return (noise(x, y, period, seed) - 0.5f) +
-           0.5f * (noise(x, y, 2 * period, seed + 1) - 0.5f) +
-           0.35f * (noise(x, y, 4 * period, seed + 2) - 0.5f);
-}
-
-static color grey(float v)
-{
-    return (color){v, v, v, 1};
-}
-
-static color shade(color c, float factor)
-{
-    return (color){c.r * factor, c.g * factor, c.b * factor, c.a};
-}
-
-static color mix(color a, color b, float t)
-{
-    return (color){a.r + (b.r - a.r) * t, a.g + (b.g - a.g) * t, a.b + (b.b - a.b) * t,
-                   a.a + (b.a - a.a) * t};
-}
-
-// Distance to the border of the unit cell that a coordinate is in, in cells.
-static float border(float t)
-{
-    t -= floorf(t);
-    return fminf(t, 1 - t);
-}
 
 // ---- walls and roofs
 
@@ -149,15 +81,30 @@ static color asphalt(float x, float y)
                  1 + 0.18f * rough(x, y, 5, 1) + 0.22f * speck);
 }
 
-// The whole carriageway across, a dashed line in its middle, worn tracks.
-static color road(float x, float y)
+static color painted(color ground, float x, float y, uint32_t seed)
+{
+    return mix(ground, grey(0.84f), 0.80f + 0.35f * rough(x, y, 32, seed));
+}
+
+// The whole carriageway across: a dashed line in its middle, worn tracks, gutters.
+static color lane(float x, float y)
 {
     color c = asphalt(x, y);
-    float track = fabsf(fabsf(x - 0.5f) - 0.22f);
+    float track = fabsf(fabsf(x - 0.5f) - 0.13f);
     c = shade(c, 1 - 0.10f * fmaxf(0, 1 - track * 12));
-    if (fabsf(x - 0.5f) < 0.009f && y < 0.5f)
-        c = mix(c, grey(0.86f), 0.85f + 0.3f * rough(x, y, 32, 2));
-    if (x < 0.025f || x > 0.975f) c = shade(c, 0.8f); // the gutter
+    float dash = 2 * y - floorf(2 * y);
+    if (fabsf(x - 0.5f) < 0.0075f && dash < 0.55f) c = painted(c, x, y, 2);
+    if (x < 0.02f || x > 0.98f) c = shade(c, 0.78f);
+    return c;
+}
+
+// The same with bays for parked cars along both sides: two in a picture's length.
+static color road(float x, float y)
+{
+    color c = lane(x, y);
+    float side = fminf(x, 1 - x), bay = 2 * y - floorf(2 * y);
+    bool tick = side < 0.26f && side > 0.20f && fminf(bay, 1 - bay) < 0.011f;
+    if (tick || fabsf(side - 0.26f) < 0.006f) c = painted(c, x, y, 4);
     return c;
 }
 
@@ -202,9 +149,21 @@ static color gravel(float x, float y)
     return (color){tone, tone * 0.93f, tone * 0.80f, 1};
 }
 
+// Ripples across the flow, the sky in some of them.
 static color water(float x, float y)
 {
-    return shade((color){0.30f, 0.47f, 0.55f, 1}, 1 + 0.25f * rough(x, y, 6, 1));
+    float wave = rough(x, 2 * y, 6, 1), fine = noise(x, 3 * y, 24, 5) - 0.5f;
+    color deep = {0.20f, 0.31f, 0.31f, 1}, sky = {0.42f, 0.53f, 0.57f, 1};
+    return mix(deep, sky, fminf(fmaxf(0.34f + 0.42f * wave + 0.35f * fine, 0), 1));
+}
+
+// Rows of crops or vines, earth between them.
+static color rows(float x, float y)
+{
+    float row = fabsf(sinf(6 * PI * x + 0.5f * rough(x, y, 6, 8)));
+    color earth = shade((color){0.58f, 0.49f, 0.34f, 1}, 1 + 0.3f * rough(x, y, 16, 2));
+    color green = shade((color){0.58f, 0.62f, 0.30f, 1}, 1 + 0.5f * rough(x, y, 24, 5));
+    return mix(earth, green, fminf(1, 1.7f * row));
 }
 
 // ---- plants
@@ -213,6 +172,16 @@ static color bark(float x, float y)
 {
     float ridge = noise(x * 4, y, 8, 1) - 0.5f;
     return shade((color){0.40f, 0.32f, 0.25f, 1}, 1 + 0.7f * ridge + 0.3f * rough(x, y, 8, 2));
+}
+
+// Flakes of three tones, as on a plane tree.
+static color plane_bark(float x, float y)
+{
+    float patch = noise(x, y, 7, 3) + 0.35f * noise(x, y, 19, 4);
+    color c = patch > 0.80f   ? (color){0.68f, 0.65f, 0.50f, 1}
+              : patch > 0.55f ? (color){0.53f, 0.50f, 0.38f, 1}
+                              : (color){0.42f, 0.40f, 0.31f, 1};
+    return shade(c, 1 + 0.2f * rough(x, y, 12, 2));
 }
 
 static color birch(float x, float y)
@@ -257,6 +226,22 @@ static color leaves_small(float x, float y)
                   (color){0.58f, 0.66f, 0.30f, 1});
 }
 
+// Long hanging leaves, one above the other.
+static color leaves_hanging(float x, float y)
+{
+    color c = {0.50f, 0.56f, 0.28f, 0};
+    for (int i = 0; i < 60; i++) {
+        float lx = cell_random(i, 0, 21), ly = cell_random(i, 1, 21);
+        float dx = x - (0.12f + 0.76f * lx) - 0.05f * sinf(7 * y + 6 * lx);
+        float dy = (y - (0.08f + 0.84f * ly)) / 0.10f;
+        if (fabsf(dy) >= 1 || fabsf(dx) >= 0.022f * (1 - dy * dy)) continue;
+        c = mix((color){0.34f, 0.42f, 0.18f, 1}, (color){0.64f, 0.69f, 0.38f, 1},
+                cell_random(i, 2, 21));
+        c.a = 1;
+    }
+    return c;
+}
+
 // A fir branch from the lower edge's middle to the top: a stem with needles to both sides.
 static color needles(float x, float y)
 {
@@ -295,6 +280,15 @@ static color window_warm(float x, float y)
     return mix(lit, glass(x, y), fminf(x, 1 - x) < 0.12f ? 0.7f : 0.25f);
 }
 
+// A wide pane: a room's ceiling and back wall, dimly, and the sky.
+static color window_wide(float x, float y)
+{
+    color room = mix((color){0.55f, 0.50f, 0.42f, 1}, (color){0.20f, 0.19f, 0.19f, 1},
+                     fminf(1, 2.2f * fabsf(y - 0.18f)));
+    if (x < 0.16f || x > 0.87f) room = (color){0.72f, 0.70f, 0.66f, 1};
+    return shade(mix(glass(x, y), room, 0.62f), 1.15f);
+}
+
 // ---- the table
 
 static const struct {
@@ -311,21 +305,29 @@ static const struct {
     [PROM_CITY_SLATE] = {"slate", 128, false, slate},
     [PROM_CITY_WOOD] = {"wood", 128, false, wood},
     [PROM_CITY_ASPHALT] = {"asphalt", 128, false, asphalt},
-    [PROM_CITY_ROAD] = {"road", 256, false, road},
+    [PROM_CITY_ROAD] = {"road", 512, false, road},
+    [PROM_CITY_LANE] = {"lane", 512, false, lane},
     [PROM_CITY_ZEBRA] = {"zebra", 128, false, zebra},
     [PROM_CITY_PAVING] = {"paving", 128, false, paving},
     [PROM_CITY_COBBLES] = {"cobbles", 256, false, cobbles},
     [PROM_CITY_GRASS] = {"grass", 256, false, grass},
     [PROM_CITY_GRAVEL] = {"gravel", 128, false, gravel},
     [PROM_CITY_BARK] = {"bark", 128, false, bark},
+    [PROM_CITY_ROWS] = {"rows", 128, false, rows},
+    [PROM_CITY_PLANE_BARK] = {"plane_bark", 128, false, plane_bark},
     [PROM_CITY_BIRCH] = {"birch", 128, false, birch},
     [PROM_CITY_WINDOW_DARK] = {"window_dark", 64, false, glass},
     [PROM_CITY_WINDOW_CURTAIN] = {"window_curtain", 128, false, window_curtain},
     [PROM_CITY_WINDOW_WARM] = {"window_warm", 64, false, window_warm},
     [PROM_CITY_AWNING] = {"awning", 64, false, awning},
-    [PROM_CITY_WATER] = {"water", 128, false, water},
+    [PROM_CITY_WINDOW_WIDE] = {"window_wide", 64, false, window_wide},
+    [PROM_CITY_WATER] = {"water", 256, false, water},
+    [PROM_CITY_SIGNS] = {"signs", 256, false, prom_city_sign_color},
+    [PROM_CITY_CLOCK] = {"clock", 128, false, prom_city_clock_color},
+    [PROM_CITY_POSTERS] = {"posters", 128, false, prom_city_poster_color},
     [PROM_CITY_LEAVES_BROAD] = {"leaves_broad", 128, true, leaves_broad},
     [PROM_CITY_LEAVES_SMALL] = {"leaves_small", 128, true, leaves_small},
+    [PROM_CITY_LEAVES_HANGING] = {"leaves_hanging", 128, true, leaves_hanging},
     [PROM_CITY_NEEDLES] = {"needles", 128, true, needles},
 };
 

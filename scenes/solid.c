@@ -132,17 +132,51 @@ void prom_solid_flat_triangle(prom_solid *shape, const float a[3], const float b
     face(shape, (const float *const[]){a, b, c}, 3);
 }
 
-void prom_solid_picture(prom_solid *shape, const float a[3], const float b[3], const float c[3],
-                        const float d[3])
+void prom_solid_picture_part(prom_solid *shape, const float a[3], const float b[3],
+                             const float c[3], const float d[3], const float uv[4])
 {
     vec3 n, u, v;
     face_axes(a, b, c, n, u, v);
-    uint32_t i = prom_solid_vertex(shape, a, n, 0, 1);
-    prom_solid_vertex(shape, b, n, 1, 1);
-    prom_solid_vertex(shape, c, n, 1, 0);
-    prom_solid_vertex(shape, d, n, 0, 0);
+    uint32_t i = prom_solid_vertex(shape, a, n, uv[0], uv[3]);
+    prom_solid_vertex(shape, b, n, uv[2], uv[3]);
+    prom_solid_vertex(shape, c, n, uv[2], uv[1]);
+    prom_solid_vertex(shape, d, n, uv[0], uv[1]);
     prom_solid_triangle(shape, i, i + 1, i + 2);
     prom_solid_triangle(shape, i, i + 2, i + 3);
+}
+
+void prom_solid_picture(prom_solid *shape, const float a[3], const float b[3], const float c[3],
+                        const float d[3])
+{
+    prom_solid_picture_part(shape, a, b, c, d, (const float[4]){0, 0, 1, 1});
+}
+
+static void flat_outline(prom_solid *shape, const float (*outline)[2], int points, float z,
+                         bool front)
+{
+    const float n[3] = {0, 0, front ? 1.0f : -1.0f};
+    uint32_t first = 0;
+    for (int i = 0; i < points; i++) {
+        float x = outline[i][0], y = outline[i][1];
+        uint32_t id = prom_solid_vertex(shape, (float[]){x, y, z}, n, x / shape->repeat,
+                                        -y / shape->repeat);
+        if (!i) first = id;
+    }
+    for (uint32_t i = 2; i < (uint32_t)points; i++)
+        prom_solid_triangle(shape, first, first + (front ? i - 1 : i),
+                            first + (front ? i : i - 1));
+}
+
+void prom_solid_extrude(prom_solid *shape, const float (*outline)[2], int points, float z0,
+                        float z1, int faces)
+{
+    if (faces & PROM_FACE_FRONT) flat_outline(shape, outline, points, z1, true);
+    if (faces & PROM_FACE_BACK) flat_outline(shape, outline, points, z0, false);
+    for (int i = 0; i < points && faces & ~(PROM_FACE_FRONT | PROM_FACE_BACK); i++) {
+        const float *a = outline[i], *b = outline[(i + 1) % points];
+        prom_solid_quad(shape, (float[]){a[0], a[1], z1}, (float[]){a[0], a[1], z0},
+                        (float[]){b[0], b[1], z0}, (float[]){b[0], b[1], z1});
+    }
 }
 
 void prom_solid_box(prom_solid *shape, float x0, float y0, float z0, float x1, float y1,

@@ -72,6 +72,13 @@ void prom_solid_flat_triangle(prom_solid *shape, const float a[3], const float b
 // A quad that shows the whole picture once.
 void prom_solid_picture(prom_solid *shape, const float a[3], const float b[3], const float c[3],
                         const float d[3]);
+// The same with a part of the picture: uv is left, top, right, bottom.
+void prom_solid_picture_part(prom_solid *shape, const float a[3], const float b[3],
+                             const float c[3], const float d[3], const float uv[4]);
+// A convex outline of (x, y) points, counter-clockwise as seen from +z, drawn out from z0 to
+// z1 > z0. Of `faces` FRONT, BACK and any of SIDES count: all the edges or none.
+void prom_solid_extrude(prom_solid *shape, const float (*outline)[2], int points, float z0,
+                        float z1, int faces);
 void prom_solid_box(prom_solid *shape, float x0, float y0, float z0, float x1, float y1,
                     float z1, int faces);
 // A moulding along x from x0 to x1: `profile` is a line of (y, z) points from bottom to top

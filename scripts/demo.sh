@@ -1,6 +1,7 @@
 #!/bin/sh
 # scripts/demo.sh PROGRAM FOLDER: makes the default city, builds it, walks it at 33 ms a frame and
-# leaves pictures, reports and FOLDER/index.html.
+# leaves pictures, reports and FOLDER/index.html. With a display and a person at the terminal, it
+# opens the viewer at last.
 set -eu
 program=$1
 out=$2
@@ -120,3 +121,11 @@ shot colours --budget-ms "$budget" --false-colours
 page > "$out/index.html.part"
 mv "$out/index.html.part" "$out/index.html"
 say "done: open $out/index.html"
+viewer="$program walk $out/city.prom --path $out/city.path --budget-ms $budget"
+if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] && [ -z "${CI:-}" ] && [ -t 2 ]; then
+    say "walk there yourself: click and look around, W A S D, P plays the path, Esc ends"
+    # Without GL in a window (code 3) the demo is complete all the same.
+    $viewer --resolution "$size" || [ $? = 3 ]
+else
+    say "to walk there yourself: $viewer"
+fi

@@ -6,9 +6,9 @@
 set -eu
 
 build="cmake ninja-build gcc g++ pkg-config libassimp-dev libmeshoptimizer-dev libcglm-dev
-       libepoxy-dev libglfw3-dev libegl-dev libegl-mesa0 libgl1-mesa-dri libopenimageio-dev libimath-dev
-       libsqlite3-dev libzstd-dev libxxhash-dev libjansson-dev libcmocka-dev"
-test=""
+       libepoxy-dev libglfw3-dev libegl-dev libegl-mesa0 libgl1-mesa-dri libopenimageio-dev
+       libimath-dev libsqlite3-dev libzstd-dev libxxhash-dev libjansson-dev libcmocka-dev"
+test="xvfb xdotool"
 demo="jq"
 bench="jq imagemagick"
 format="clang-format clang-tidy"

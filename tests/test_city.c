@@ -340,57 +340,289 @@ static void test_many_prototypes(void **unused)
     unlink("test_city_e.glb");
 }
 
+// ---- the city as it stands: nodes with their places in the world
+
+typedef struct placed {
+    const char *name;
+    json_t *node;
+    double c, s, scale, at[3]; // turned about +y, scaled, shifted
+} placed;
+
+static double json_at(const json_t *object, const char *key, size_t i, double missing)
+{
+    const json_t *array = json_object_get(object, key);
+    return array ? json_number_value(json_array_get(array, i)) : missing;
+}
+
+// Parents come before their children.
+static placed *place_nodes(const glb *g)
+{
+    size_t n = count_of(g, "nodes");
+    placed *all = prom_calloc(n, sizeof *all);
+    for (size_t i = 0; i < n; i++) {
+        if (!all[i].node) all[i] = (placed){.c = 1, .scale = 1}; // the root
+        all[i].node = item(g, "nodes", i);
+        all[i].name = json_string_value(json_object_get(all[i].node, "name"));
+        const json_t *children = json_object_get(all[i].node, "children");
+        for (size_t k = 0; k < json_array_size(children); k++) {
+            size_t id = (size_t)json_integer_value(json_array_get(children, k));
+            const json_t *node = item(g, "nodes", id);
+            double half = json_at(node, "rotation", 1, 0), w = json_at(node, "rotation", 3, 1);
+            double c = w * w - half * half, s = 2 * half * w,
+                   x = json_at(node, "translation", 0, 0),
+                   z = json_at(node, "translation", 2, 0);
+            const placed *p = &all[i];
+            all[id] = (placed){.node = json_object_get(g->json, "nodes"), // marks it as placed
+                               .c = p->c * c - p->s * s,
+                               .s = p->s * c + p->c * s,
+                               .scale = p->scale * json_at(node, "scale", 0, 1),
+                               .at = {p->at[0] + p->scale * (p->c * x + p->s * z),
+                                      p->at[1] + p->scale * json_at(node, "translation", 1, 0),
+                                      p->at[2] + p->scale * (p->c * z - p->s * x)}};
+        }
+    }
+    return all;
+}
+
+static size_t count_named(const placed *all, size_t n, const char *name)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < n; i++) count += !strncmp(all[i].name, name, strlen(name));
+    return count;
+}
+
+typedef void (*triangle_visitor)(void *user, const placed *node, double v[3][3]);
+
+static void visit_triangles(const glb *g, const placed *node, triangle_visitor visit,
+                            void *user)
+{
+    if (!json_object_get(node->node, "mesh")) return;
+    const json_t *primitives =
+        json_object_get(item(g, "meshes", number(node->node, "mesh")), "primitives");
+    for (size_t i = 0; i < json_array_size(primitives); i++) {
+        const json_t *p = json_array_get(primitives, i);
+        const json_t *a = item(g, "accessors", number(p, "indices"));
+        bool wide = number(a, "componentType") == 5125;
+        size_t n, stride, vertices, vertex_stride;
+        const uint8_t *ids = elements(g, number(p, "indices"), wide ? 4 : 2, &n, &stride);
+        const uint8_t *at = elements(g, number(json_object_get(p, "attributes"), "POSITION"),
+                                     12, &vertices, &vertex_stride);
+        for (size_t k = 0; k < n; k += 3) {
+            double v[3][3];
+            for (size_t j = 0; j < 3; j++) {
+                float q[3];
+                memcpy(q, at + index_at(ids, k + j, wide) * vertex_stride, sizeof q);
+                double x = node->scale * (double)q[0], z = node->scale * (double)q[2];
+                v[j][0] = node->at[0] + node->c * x + node->s * z;
+                v[j][1] = node->at[1] + node->scale * (double)q[1];
+                v[j][2] = node->at[2] + node->c * z - node->s * x;
+            }
+            visit(user, node, v);
+        }
+    }
+}
+
+// ---- river and size
+
+static void test_river(void **unused)
+{
+    (void)unused;
+    for (uint32_t blocks = 1; blocks <= 4; blocks++) {
+        glb g = {0};
+        make_city("test_city_i.glb", NULL,
+                  (prom_city_options){.seed = 1, .blocks = blocks, .detail = 1}, NULL);
+        open_glb("test_city_i.glb", &g);
+        size_t n = count_of(&g, "nodes");
+        placed *all = place_nodes(&g);
+        bool river = blocks > 1;
+        assert_int_equal(count_named(all, n, "water"), river);
+        assert_int_equal(count_named(all, n, "quay_"), river ? 2 * blocks : 0);
+        assert_int_equal(count_named(all, n, "stone_bridge"), river);
+        assert_int_equal(count_named(all, n, "foot_bridge"), blocks > 2);
+        assert_int_equal(count_named(all, n, "town_hall"), river);
+        assert_int_equal(count_named(all, n, "church"), blocks > 2);
+        assert_int_equal(count_named(all, n, "boat") > 0, river);
+        prom_free(all);
+        close_glb(&g);
+    }
+    unlink("test_city_i.glb");
+}
+
+// What the documentation promises of small cities.
+static void test_sizes(void **unused)
+{
+    (void)unused;
+    static const struct {
+        uint32_t blocks, detail;
+        uint64_t least, most;
+    } sizes[] = {{1, 1, 60000, 130000},
+                 {2, 1, 120000, 300000},
+                 {3, 2, 700000, 1200000},
+                 {0, 0, 1000000, 1600000}};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        uint64_t triangles = 0;
+        make_city("test_city_j.glb", NULL,
+                  (prom_city_options){
+                      .seed = 1, .blocks = sizes[i].blocks, .detail = sizes[i].detail},
+                  &triangles);
+        assert_in_range(triangles, sizes[i].least, sizes[i].most);
+    }
+    unlink("test_city_j.glb");
+}
+
 // ---- the walk
+
+#define STRIDE 4 // frames between the places that are tried
+#define PLACES (600 / STRIDE)
+
+typedef struct walker {
+    double eye[PLACES][3], low[2], high[2];
+    double ground[PLACES];  // the highest thing below the eye
+    const char *on[PLACES]; // and its name
+    const char *blocked;    // by what, or NULL
+} walker;
+
+// Cuts a polygon at height y, keeping what is above (sign 1) or below (-1).
+static size_t clip(double (*out)[3], double (*in)[3], size_t n, double y, double sign)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < n; i++) {
+        const double *a = in[i], *b = in[(i + 1) % n];
+        double da = sign * (a[1] - y), db = sign * (b[1] - y);
+        if (da >= 0) memcpy(out[count++], a, sizeof *out);
+        if ((da < 0) == (db < 0)) continue;
+        double t = da / (da - db);
+        for (int k = 0; k < 3; k++) out[count][k] = a[k] + t * (b[k] - a[k]);
+        count++;
+    }
+    return count;
+}
+
+static bool near_edge(const double a[3], const double b[3], const double p[3], double radius)
+{
+    double dx = b[0] - a[0], dz = b[2] - a[2], length = dx * dx + dz * dz;
+    double t = length > 0 ? ((p[0] - a[0]) * dx + (p[2] - a[2]) * dz) / length : 0;
+    t = fmin(fmax(t, 0), 1);
+    return hypot(p[0] - a[0] - t * dx, p[2] - a[2] - t * dz) < radius;
+}
+
+// Height of the triangle over (x, z); NAN beside it.
+static double height_at(double v[3][3], double x, double z)
+{
+    double d =
+        (v[1][0] - v[0][0]) * (v[2][2] - v[0][2]) - (v[2][0] - v[0][0]) * (v[1][2] - v[0][2]);
+    if (fabs(d) < 1e-9) return NAN;
+    double s = ((x - v[0][0]) * (v[2][2] - v[0][2]) - (v[2][0] - v[0][0]) * (z - v[0][2])) / d;
+    double t = ((v[1][0] - v[0][0]) * (z - v[0][2]) - (x - v[0][0]) * (v[1][2] - v[0][2])) / d;
+    if (s < -1e-6 || t < -1e-6 || s + t > 1 + 1e-6) return NAN;
+    return v[0][1] + s * (v[1][1] - v[0][1]) + t * (v[2][1] - v[0][1]);
+}
+
+static void meet(void *user, const placed *node, double v[3][3])
+{
+    walker *w = user;
+    const double r = 0.35;
+    double low[3], high[3];
+    for (int k = 0; k < 3; k++) {
+        low[k] = fmin(v[0][k], fmin(v[1][k], v[2][k]));
+        high[k] = fmax(v[0][k], fmax(v[1][k], v[2][k]));
+    }
+    if (high[0] < w->low[0] - r || low[0] > w->high[0] + r || high[2] < w->low[1] - r ||
+        low[2] > w->high[1] + r)
+        return;
+    for (int i = 0; i < PLACES; i++) {
+        const double *p = w->eye[i];
+        if (high[0] < p[0] - r || low[0] > p[0] + r || high[2] < p[2] - r ||
+            low[2] > p[2] + r || low[1] > p[1] + 0.3)
+            continue;
+        double h = height_at(v, p[0], p[2]);
+        if (h < p[1] && h > w->ground[i]) { // false for NAN
+            w->ground[i] = h;
+            w->on[i] = node->name;
+        }
+        // The body: from knee to hat.
+        double a[8][3], b[8][3];
+        memcpy(a, v, 3 * sizeof *a);
+        size_t n = clip(b, a, 3, p[1] - 1.2, 1);
+        n = clip(a, b, n, p[1] + 0.2, -1);
+        for (size_t k = 0; k < n; k++)
+            if (near_edge(a[k], a[(k + 1) % n], p, r)) w->blocked = node->name;
+    }
+}
+
+static void check_walk(const glb *g, const prom_path *path, bool river)
+{
+    walker *w = prom_calloc(1, sizeof *w);
+    size_t n = count_of(g, "nodes");
+    placed *all = place_nodes(g);
+    for (int k = 0; k < 2; k++) w->low[k] = INFINITY, w->high[k] = -INFINITY;
+    for (int i = 0; i < PLACES; i++) {
+        memcpy(w->eye[i], path->keys.data[i * STRIDE].position, sizeof w->eye[i]);
+        w->ground[i] = -INFINITY;
+        for (int k = 0; k < 2; k++) {
+            w->low[k] = fmin(w->low[k], w->eye[i][2 * k]);
+            w->high[k] = fmax(w->high[k], w->eye[i][2 * k]);
+        }
+    }
+    for (size_t i = 0; i < n; i++) visit_triangles(g, &all[i], meet, w);
+    if (w->blocked) fail_msg("the walk runs into %s", w->blocked);
+    bool street = false, bridge = false, quay = false, square = false;
+    for (int i = 0; i < PLACES; i++) {
+        assert_non_null(w->on[i]);
+        if (fabs(w->eye[i][1] - w->ground[i] - 1.7) > 0.12)
+            fail_msg("frame %d is %.2f m above %s", i * STRIDE, w->eye[i][1] - w->ground[i],
+                     w->on[i]);
+        street |= !strcmp(w->on[i], "street");
+        bridge |= !strcmp(w->on[i], "stone_bridge_0");
+        quay |= !strcmp(w->on[i], "quay");
+        square |= !strcmp(w->on[i], "ground");
+    }
+    assert_true(street);
+    assert_true(bridge == river && quay == river && square == river);
+    prom_free(all);
+    prom_free(w);
+}
+
+static void check_motion(const prom_path *path)
+{
+    const prom_path_key *k = path->keys.data;
+    for (size_t i = 1; i < path->keys.count; i++) {
+        double step = hypot(k[i].position[0] - k[i - 1].position[0],
+                            k[i].position[2] - k[i - 1].position[2]);
+        assert_true(step > 0.05 && step < 0.25); // between a walk and a bicycle's speed
+        assert_true(fabs(k[i].position[1] - k[i - 1].position[1]) < 0.045);
+        double dot = 0;
+        for (int j = 0; j < 4; j++)
+            dot += (double)(k[i].orientation[j] * k[i - 1].orientation[j]);
+        assert_true(fabs(dot) > cos(0.04)); // under five degrees a frame
+    }
+}
 
 static void test_walk(void **unused)
 {
     (void)unused;
-    for (uint32_t blocks = 1; blocks <= 5; blocks += 2) {
+    for (uint32_t blocks = 1; blocks <= 5; blocks++) {
         prom_city_options options = {.seed = blocks, .blocks = blocks, .detail = 1};
         prom_path path;
         prom_error error = {0};
         glb g = {0};
+        options.flight_file = "test_city_f.flight";
         make_city("test_city_f.glb", "test_city_f.path", options, NULL);
         assert_int_equal(prom_path_load("test_city_f.path", &path, &error), PROM_OK);
         assert_int_equal(path.keys.count, 600);
         open_glb("test_city_f.glb", &g);
-        const prom_path_key *k = path.keys.data;
-        for (size_t i = 0; i < 600; i++) {
-            assert_true(k[i].position[1] == 1.7);
-            if (!i) continue;
-            double step = hypot(k[i].position[0] - k[i - 1].position[0],
-                                k[i].position[2] - k[i - 1].position[2]);
-            assert_true(step > 0.05 && step < 0.15); // about 3 m/s
-            double dot = 0;
-            for (int j = 0; j < 4; j++)
-                dot += (double)(k[i].orientation[j] * k[i - 1].orientation[j]);
-            assert_true(fabs(dot) > cos(0.04)); // under five degrees a frame
-        }
-        // On the carriageway: nothing but ground within a metre and a half.
-        for (size_t b = 0; b < count_of(&g, "nodes"); b++) {
-            const json_t *block = item(&g, "nodes", b),
-                         *at = json_object_get(block, "translation");
-            const char *name = json_string_value(json_object_get(block, "name"));
-            if (strncmp(name, "block_", 6)) continue;
-            const json_t *children = json_object_get(block, "children");
-            for (size_t c = 0; c < json_array_size(children); c++) {
-                const json_t *n =
-                    item(&g, "nodes", (size_t)json_integer_value(json_array_get(children, c)));
-                const json_t *t = json_object_get(n, "translation");
-                if (!strcmp(json_string_value(json_object_get(n, "name")), "ground")) continue;
-                double x = json_number_value(json_array_get(at, 0)) +
-                           json_number_value(json_array_get(t, 0));
-                double z = json_number_value(json_array_get(at, 2)) +
-                           json_number_value(json_array_get(t, 2));
-                for (size_t i = 0; i < 600; i += 5)
-                    assert_true(hypot(k[i].position[0] - x, k[i].position[2] - z) > 1.5);
-            }
-        }
+        check_motion(&path);
+        check_walk(&g, &path, blocks > 1);
         close_glb(&g);
+        prom_path_finish(&path);
+        assert_int_equal(prom_path_load("test_city_f.flight", &path, &error), PROM_OK);
+        assert_int_equal(path.keys.count, 600);
+        for (size_t i = 0; i < 600; i++) assert_true(path.keys.data[i].position[1] > 30);
         prom_path_finish(&path);
     }
     unlink("test_city_f.glb");
     unlink("test_city_f.path");
+    unlink("test_city_f.flight");
 }
 
 // ---- refusals
@@ -416,6 +648,12 @@ static void test_bad_options(void **unused)
     assert_int_equal(prom_city_write("test_city_g.glb", "no/such/x.path", &small, NULL, &error),
                      PROM_ERR_OUTPUT);
     assert_int_equal(access("test_city_g.glb", F_OK), -1);
+    small.flight_file = "no/such/x.path";
+    assert_int_equal(
+        prom_city_write("test_city_g.glb", "test_city_g.path", &small, NULL, &error),
+        PROM_ERR_OUTPUT);
+    assert_int_equal(access("test_city_g.glb", F_OK), -1);
+    assert_int_equal(access("test_city_g.path", F_OK), -1);
 }
 
 // Meshes above 65535 vertices have 32-bit indices.
@@ -459,9 +697,14 @@ static void test_wide_indices(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_same_seed_same_city), cmocka_unit_test(test_geometry_is_sound),
-        cmocka_unit_test(test_many_prototypes),     cmocka_unit_test(test_walk),
-        cmocka_unit_test(test_bad_options),         cmocka_unit_test(test_wide_indices),
+        cmocka_unit_test(test_same_seed_same_city),
+        cmocka_unit_test(test_geometry_is_sound),
+        cmocka_unit_test(test_many_prototypes),
+        cmocka_unit_test(test_walk),
+        cmocka_unit_test(test_river),
+        cmocka_unit_test(test_sizes),
+        cmocka_unit_test(test_bad_options),
+        cmocka_unit_test(test_wide_indices),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

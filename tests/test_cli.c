@@ -22,7 +22,7 @@ static void expect(const char *arguments, int code)
     assert_int_equal(run.code, code);
 }
 
-static const char *const commands[] = {"build",     "info",       "shot",       "bench",
+static const char *const commands[] = {"build",     "info",       "shot",       "walk", "bench",
                                        "calibrate", "scene city", "scene tile", NULL};
 
 static void help_goes_to_stdout(void **state)
@@ -111,6 +111,11 @@ static const char *const wrong[][2] = {
     {"bench a.prom --budget-ms -5", "--budget-ms"},
     {"bench a.prom --selector best", "greedy"},
     {"bench a.prom --frames 0", "--frames"},
+    {"walk", "missing"},
+    {"walk a.prom b.prom", "b.prom"},
+    {"walk a.prom --frames 0", "--frames"},
+    {"walk a.prom --budget-ms 0", "--budget-ms"},
+    {"walk a.prom --selector best", "greedy"},
     {"calibrate --effort 4", "--effort"},
     {"calibrate here", "here"},
     {"scene city", "--output"},
@@ -162,6 +167,7 @@ static void unusable_inputs_exit_2_and_are_named(void **state)
     expect_error("info empty.prom", 2, "empty.prom");
     expect_error("info .", 2, ".");
     expect_error("bench missing.prom", 2, "missing.prom");
+    expect_error("walk missing.prom", 2, "missing.prom");
     expect_error("shot text.prom -o a.png", 2, "text.prom");
     expect_error("build missing.glb -o a.prom", 2, "missing.glb");
     expect_error("build . -o a.prom", 2, ".");
@@ -184,6 +190,7 @@ static void unwritable_outputs_exit_4_and_are_named(void **state)
     expect_error("shot missing.prom -o nowhere/a.png", 4, "nowhere/a.png");
     expect_error("bench missing.prom --report nowhere/r.json", 4, "nowhere/r.json");
     expect_error("bench missing.prom --csv nowhere/r.csv", 4, "nowhere/r.csv");
+    expect_error("walk missing.prom --shot nowhere/a.png", 4, "nowhere/a.png");
     expect_error("calibrate -o nowhere/p.json", 4, "nowhere/p.json");
     expect_error("scene city -o nowhere/a.glb", 4, "nowhere/a.glb");
     expect_error("scene city -o b.glb --path nowhere/a.path", 4, "nowhere/a.path");

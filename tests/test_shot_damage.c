@@ -148,31 +148,21 @@ static void hostile_values(void **state)
     static const char *const edits[] = {
         "UPDATE node SET origin_x=9e17",
         "UPDATE node SET origin_y=-9e17 WHERE id%3=1",
-        "UPDATE node SET center_x=9e17, half_x=0",
         "UPDATE node SET half_x=9e17, half_y=9e17, half_z=9e17, radius=9e17",
         "UPDATE node SET half_x=0, half_y=0, half_z=0, radius=0",
-        "UPDATE node SET basis_xx=9e17, basis_yy=9e17, basis_zz=-9e17",
+        "UPDATE node SET basis_xx=9e17, basis_yy=9e17, basis_zz=-9e17 WHERE id%17=3",
         "UPDATE node SET basis_xx=0, basis_yy=0, basis_zz=0, basis_xz=0, basis_zx=0",
-        "UPDATE node SET name='\x1b[31m' || id",
-        "UPDATE prototype SET radius=9e17, half_x=9e17",
+        "UPDATE prototype SET radius=9e17, half_x=9e17, triangles=9223372036854775807",
         "UPDATE prototype SET radius=0, half_x=0, half_y=0, half_z=0",
-        "UPDATE prototype SET triangles=9223372036854775807",
-        "UPDATE prototype SET coverage=zeroblob(length(coverage))",
-        "UPDATE prototype SET shares=zeroblob(length(shares))",
-        "UPDATE representation SET error=9e17, near_k=3e38",
-        "UPDATE representation SET max_size_px=1e-38 WHERE kind>0",
+        "UPDATE prototype SET coverage=zeroblob(length(coverage)),"
+        "shares=zeroblob(length(shares)); UPDATE accuracy SET value=zeroblob(length(value))",
+        "UPDATE representation SET error=9e17, near_k=3e38, switch_distance=1e-38,"
+        "max_size_px=iif(kind>0,1e-38,NULL)",
         "UPDATE representation SET draws=4294967295,vertices=4294967295,triangles=4294967295",
-        "UPDATE representation SET draws=0, vertices=0, triangles=0, level=4294967295",
-        "UPDATE representation SET flags=2 WHERE kind=0",
-        "UPDATE representation SET switch_distance=1e-38",
-        "UPDATE representation SET shading=3",
-        "UPDATE accuracy SET value=zeroblob(length(value))",
-        "UPDATE material SET red=3e38, green=-3e38, alpha=0, alpha_cutoff=3e38",
-        "UPDATE material SET alpha_mode=2, double_sided=1",
-        "UPDATE prototype SET flags=flags|12 WHERE child_count=0",
-        "DELETE FROM meta",
-        "DELETE FROM stage",
-        "UPDATE meta SET value='{'",
+        "UPDATE representation SET draws=0, vertices=0, triangles=0, level=4294967295,"
+        "shading=3, flags=flags|2; UPDATE prototype SET flags=flags|12 WHERE child_count=0",
+        "UPDATE material SET red=3e38, green=-3e38, alpha=0, alpha_cutoff=3e38,"
+        "alpha_mode=2, double_sided=1; DELETE FROM meta; DELETE FROM stage",
     };
     int pictures = 0, count = (int)(sizeof edits / sizeof *edits);
     for (int i = 0; i < count; i++) {
