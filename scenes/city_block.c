@@ -123,7 +123,7 @@ void prom_city_fill_houses(prom_city_site *s)
     for (uint32_t i = 0; i < trees; i++)
         place_any(s, PROM_CITY_TREE, prom_random_between(s->random, x0, x1),
                   prom_random_between(s->random, z0, z1), turn(s), 0.6f, 0.85f);
-    for (uint32_t i = 0; i < 4; i++)
+    for (uint32_t i = 0; i < 3; i++)
         place_any(s, PROM_CITY_SHRUB, prom_random_between(s->random, x0, x1),
                   prom_random_between(s->random, z0, z1), turn(s), 0.8f, 1.3f);
 }
@@ -160,9 +160,9 @@ static void put_between(const side *e, float along)
     prom_random *random = e->site->random;
     float lot = prom_random_unit(random);
     if (lot < 0.14f) put(e, PROM_CITY_BENCH, along, -0.8f, PI, 1);
-    if (lot > 0.92f) put(e, PROM_CITY_BIN, along, -0.6f, 0, 1);
-    if (lot > 0.20f && lot < 0.32f) put(e, PROM_CITY_BICYCLE, along, -1.15f, 0, 1);
-    if (lot > 0.36f && lot < 0.42f) put(e, PROM_CITY_COLUMN, along, -1.1f, turn(e->site), 1);
+    if (lot > 0.95f) put(e, PROM_CITY_BIN, along, -0.6f, 0, 1);
+    if (lot > 0.20f && lot < 0.30f) put(e, PROM_CITY_BICYCLE, along, -1.15f, 0, 1);
+    if (lot > 0.36f && lot < 0.40f) put(e, PROM_CITY_COLUMN, along, -1.1f, turn(e->site), 1);
 }
 
 static void fill_side(prom_city_site *site, float x, float z, float yaw, float length,

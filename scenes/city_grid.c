@@ -22,7 +22,8 @@ static uint32_t grid_vertex(prom_solid *shape, const prom_grid *g, float x, floa
     float dz = (grid_height(g, x, z + e) - grid_height(g, x, z - e)) / (2 * e);
     float length = sqrtf(dx * dx + 1 + dz * dz);
     float normal[3] = {-dx / length, 1 / length, -dz / length};
-    float at[3] = {x, grid_height(g, x, z), z + (g->shift_of ? g->shift_of(g->user, x) : 0)};
+    float at[3] = {x, grid_height(g, x, z), z};
+    if (g->shift) g->shift(g->user, &at[0], &at[2]);
     return prom_solid_vertex(shape, at, normal, x / shape->repeat, z / shape->repeat);
 }
 

@@ -9,6 +9,7 @@
 #define FLAT 46.0f   // width of the belt of gardens
 #define CREST 500.0f // beyond this the land falls again, behind the highest hills
 #define ROAD_HALF 3.5f
+#define VINEYARDS 14
 #define BEND 240.0f // how far the river turns aside before the hills hide it
 
 typedef struct land {
@@ -32,12 +33,15 @@ static float outside(const land *l, float x, float z)
     return hypotf(beyond(l->x0, l->x1, x), beyond(l->z0, l->z1, z));
 }
 
-// The river leaves the city in a straight line and then turns.
-static float land_shift(const void *user, float x)
+// River and road leave the city in straight lines and then turn, and all the land with them.
+static void land_shift(const void *user, float *x, float *z)
 {
     const land *l = user;
-    float out = beyond(l->x0, l->x1, x);
-    return (x < 0 ? -BEND : BEND) * smooth_step(60, REACH, out);
+    float along = beyond(l->x0, l->x1, *x), across = beyond(l->z0, l->z1, *z);
+    float dz = (*x < 0 ? -BEND : BEND) * smooth_step(60, REACH, along);
+    float dx = (*z < 0 ? BEND : -BEND) * smooth_step(30, REACH, across);
+    *x += dx;
+    *z += dz;
 }
 
 static float hills(float x, float z)
@@ -138,7 +142,7 @@ static void build_land(prom_city *city, const land *l, uint32_t parent)
                              {PROM_CITY_ROWS, 0xffe8a0, 9},
                              {PROM_CITY_ROWS, 0xe6f0c8, 9},
                              {PROM_CITY_GRASS, 0x9aa888, 7},
-                             {PROM_CITY_GRAVEL, 0xd8d4cc, 3}};
+                             {PROM_CITY_ASPHALT, 0xe8e4dc, 4}};
     float w = PROM_CITY_WATER_WIDTH / 2;
     const float river[8] = {l->river - w - 12, l->river - w - 5, l->river - w,
                             l->river - w + 2,  l->river + w - 2, l->river + w,
@@ -151,7 +155,7 @@ static void build_land(prom_city *city, const land *l, uint32_t parent)
                    .z = &z,
                    .paint_of = land_cell,
                    .height_of = land_height,
-                   .shift_of = land_shift,
+                   .shift = land_shift,
                    .user = l};
     for (int part = 0; part < 4; part++) {
         prom_solid shape;
@@ -195,7 +199,7 @@ static void build_water(prom_city *city, const land *l, uint32_t parent)
                    .z = &z,
                    .paint_of = water_cell,
                    .height_of = water_height,
-                   .shift_of = land_shift,
+                   .shift = land_shift,
                    .user = l};
     prom_solid shape;
     prom_solid_init(&shape);
@@ -218,8 +222,9 @@ typedef struct planter {
 static void plant(planter *p, prom_city_kind kind, float x, float z, float yaw, float sink,
                   float scale)
 {
-    prom_city_place_any(p->city, kind, p->node, x, land_height(p->l, x, z) - sink,
-                        z + land_shift(p->l, x), yaw, scale, &p->random);
+    float y = land_height(p->l, x, z) - sink;
+    land_shift(p->l, &x, &z);
+    prom_city_place_any(p->city, kind, p->node, x, y, z, yaw, scale, &p->random);
 }
 
 static float turn(planter *p)
@@ -263,7 +268,7 @@ static void plant_villas(planter *p)
 static void plant_woods(planter *p)
 {
     const land *l = p->l;
-    float step = 42, w = l->x1 - l->x0 + 2 * CREST, d = l->z1 - l->z0 + 2 * CREST;
+    float step = 50, w = l->x1 - l->x0 + 2 * CREST, d = l->z1 - l->z0 + 2 * CREST;
     // Not more in a large city's surroundings than one can afford.
     step = fmaxf(step, sqrtf(w * d / 1200));
     for (float z = l->z0 - CREST; z < l->z1 + CREST; z += step) {
@@ -303,7 +308,9 @@ static void plant_vines(planter *p)
 {
     const land *l = p->l;
     uint32_t first = p->city->first[PROM_CITY_TERRACE];
-    for (int i = 0, placed = 0; i < 400 && placed < 14; i++) {
+    float places[VINEYARDS][2];
+    int placed = 0;
+    for (int i = 0; i < 400 && placed < VINEYARDS; i++) {
         float angle = turn(p), reach = prom_random_between(&p->random, 110, 330);
         float x = (l->x0 + l->x1) / 2 + cosf(angle) * ((l->x1 - l->x0) / 2 + reach);
         float z = (l->z0 + l->z1) / 2 + sinf(angle) * ((l->z1 - l->z0) / 2 + reach);
@@ -313,10 +320,16 @@ static void plant_vines(planter *p)
         if (slope < 0.17f || slope > 0.27f || is_forest(l, x, z) || fabsf(x - l->road) < 30 ||
             fabsf(z - l->river) < 60 || outside(l, x, z) < 60)
             continue;
+        bool taken = false;
+        for (int k = 0; k < placed; k++)
+            taken |= hypotf(x - places[k][0], z - places[k][1]) < 52;
+        if (taken) continue;
+        places[placed][0] = x;
+        places[placed++][1] = z;
         // Its front looks down the slope.
-        prom_city_place(p->city, first, p->node, x, land_height(l, x, z), z + land_shift(l, x),
-                        atan2f(-dx, -dz), 1);
-        placed++;
+        float y = land_height(l, x, z);
+        land_shift(l, &x, &z);
+        prom_city_place(p->city, first, p->node, x, y, z, atan2f(-dx, -dz), 1);
     }
 }
 

@@ -59,8 +59,8 @@ static void build_spire(prom_solid *shape, float half, float y, float height)
 {
     const float lower[3][2] = {
         {half * 1.52f, 0}, {half * 1.0f, 0.16f * height}, {half * 0.74f, 0.30f * height}};
-    const float upper[4][2] = {{half * 0.4f, 0.29f * height},
-                               {half * 0.78f, 0.28f * height},
+    const float upper[4][2] = {{half * 0.5f, 0.26f * height},
+                               {half * 0.755f, 0.30f * height},
                                {half * 0.2f, 0.8f * height},
                                {0, height}};
     prom_solid_frame old = prom_solid_enter(shape, 0, y, 0, PI / 4);

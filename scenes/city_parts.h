@@ -321,7 +321,8 @@ typedef struct prom_grid {
     // Paint number of the cell at a point; negative: none.
     int (*paint_of)(const void *user, float x, float z);
     float (*height_of)(const void *user, float x, float z); // NULL: `y`
-    float (*shift_of)(const void *user, float x);           // added to z; NULL: 0
+    // Moves a corner after its height is known; NULL: not at all.
+    void (*shift)(const void *user, float *x, float *z);
     float y;
     const void *user;
 } prom_grid;

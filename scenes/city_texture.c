@@ -216,14 +216,20 @@ static color leaves(float x, float y, int count, float length, float width, colo
 
 static color leaves_broad(float x, float y)
 {
-    return leaves(x, y, 46, 0.13f, 0.062f, (color){0.16f, 0.29f, 0.10f, 1},
-                  (color){0.42f, 0.55f, 0.22f, 1});
+    return leaves(x, y, 46, 0.13f, 0.062f, (color){0.19f, 0.33f, 0.12f, 1},
+                  (color){0.48f, 0.60f, 0.26f, 1});
 }
 
 static color leaves_small(float x, float y)
 {
     return leaves(x, y, 85, 0.075f, 0.040f, (color){0.27f, 0.37f, 0.12f, 1},
                   (color){0.58f, 0.66f, 0.30f, 1});
+}
+
+static color leaves_red(float x, float y)
+{
+    return leaves(x, y, 46, 0.13f, 0.062f, (color){0.26f, 0.10f, 0.12f, 1},
+                  (color){0.55f, 0.22f, 0.20f, 1});
 }
 
 // Long hanging leaves, one above the other.
@@ -327,6 +333,7 @@ static const struct {
     [PROM_CITY_POSTERS] = {"posters", 128, false, prom_city_poster_color},
     [PROM_CITY_LEAVES_BROAD] = {"leaves_broad", 128, true, leaves_broad},
     [PROM_CITY_LEAVES_SMALL] = {"leaves_small", 128, true, leaves_small},
+    [PROM_CITY_LEAVES_RED] = {"leaves_red", 128, true, leaves_red},
     [PROM_CITY_LEAVES_HANGING] = {"leaves_hanging", 128, true, leaves_hanging},
     [PROM_CITY_NEEDLES] = {"needles", 128, true, needles},
 };

@@ -30,7 +30,7 @@ static const species park[] = {
     {"birch", BROAD, 11, 0.16f, {0.60f, 0.21f, 0.36f}, FINE, PROM_CITY_BIRCH, {0xf4ffb8, 0xffffd0}, 0.80f, 340, 9, 6},
     {"linden", BROAD, 12, 0.28f, {0.60f, 0.29f, 0.37f}, LEAF, BARK, {0xe8f4b4, 0xd8ecb0}, 1.05f, 400, 10, 6},
     {"fir", CONE, 14, 0.24f, {0.26f, 0, 0.12f}, PROM_CITY_NEEDLES, BARK, {0xf0fff4, 0xe0f4f0}, 0, 300, 0, 0},
-    {"beech", BROAD, 12, 0.32f, {0.58f, 0.37f, 0.38f}, LEAF, BARK, {0xff8a78, 0xf09a80}, 1.05f, 400, 10, 7},
+    {"beech", BROAD, 12, 0.32f, {0.58f, 0.37f, 0.38f}, PROM_CITY_LEAVES_RED, BARK, {0xffffff, 0xf0d8c8}, 1.05f, 400, 10, 7},
     {"apple", BROAD, 5.5f, 0.16f, {0.64f, 0.46f, 0.33f}, FINE, BARK, {0xe0f0c0, 0xf0f4c8}, 0.75f, 300, 8, 5},
     {"larch", CONE, 13, 0.20f, {0.19f, 0, 0.16f}, PROM_CITY_NEEDLES, BARK, {0xffffa8, 0xf4ffb0}, 0, 300, 0, 0},
 };
@@ -48,7 +48,7 @@ static const species bank[] = {
 static const species shrub[] = {
     {"box", BROAD, 1.3f, 0, {0.48f, 0.62f, 0.46f}, LEAF, BARK, {0xb8d0a0, 0xc8e0b0}, 0.55f, 120, 0, 0},
     {"privet", BROAD, 1.7f, 0, {0.48f, 0.55f, 0.46f}, FINE, BARK, {0xd8e8c0, 0xe8f0c8}, 0.55f, 140, 0, 3},
-    {"barberry", BROAD, 1.2f, 0, {0.48f, 0.60f, 0.46f}, FINE, BARK, {0xff9890, 0xf4a890}, 0.50f, 120, 0, 0},
+    {"barberry", BROAD, 1.2f, 0, {0.48f, 0.60f, 0.46f}, PROM_CITY_LEAVES_RED, BARK, {0xffffff, 0xfff0e0}, 0.50f, 120, 0, 0},
 };
 // clang-format on
 

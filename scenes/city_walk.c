@@ -87,7 +87,7 @@ static int river_corners(const prom_city_plan *plan, corner *c)
     double north = (double)plan->street_z[plan->river],
            to = (double)plan->street_z[plan->river + 1];
     double west = (double)plan->street_x[plan->middle - 1], square = (west + x) / 2;
-    double quay = to - half - 3.6, side = x - half - 1.6;
+    double quay = to - half - 3.2, side = x - half - 1.3;
     int n = 0;
     c[n++] = (corner){x - 0.5, north - 24, 0};
     c[n++] = (corner){x - 0.5, north - 2, 5};

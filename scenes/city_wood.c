@@ -5,8 +5,8 @@
 #include <math.h>
 
 #define PI 3.14159265f
-#define TREES 26
-#define RADIUS 22.0f
+#define TREES 34
+#define RADIUS 26.0f
 
 // ---- woods
 
