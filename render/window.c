@@ -180,7 +180,6 @@ prom_window *prom_window_create(const char *title, const uint32_t size_px[2], bo
                   "no window with OpenGL 4.5 can be opened (%s): install a driver (Debian: "
                   "libegl1 libgl1-mesa-dri), or use `promenade bench` or `promenade shot`",
                   last_problem());
-        glfwTerminate();
         return NULL;
     }
     prom_window *w = prom_calloc(1, sizeof *w);
@@ -190,11 +189,12 @@ prom_window *prom_window_create(const char *title, const uint32_t size_px[2], bo
     return w;
 }
 
+// GLFW stays initialised until the program ends: it would unload X11 libraries, whose memory is
+// lost with them.
 void prom_window_destroy(prom_window *window)
 {
     if (!window) return;
     glfwDestroyWindow(window->handle);
-    glfwTerminate();
     prom_free(window);
 }
 
