@@ -36,7 +36,7 @@ static void init(prom_gallery *g, const prom_gallery_options *options, const cha
     prom_gallery_plan_init(&g->plan, &g->options);
     // Each painting has a picture of its own; a large gallery shows some of them twice, far
     // apart.
-    uint32_t paintings = (2 + 2 * g->options.detail) * g->plan.room_count;
+    uint32_t paintings = (2 + g->options.detail) * g->plan.room_count;
     g->painting_limit = paintings < PAINTINGS_MAX ? paintings : PAINTINGS_MAX;
     g->root = add_group(g, "gallery", PROM_GLB_NONE);
 }

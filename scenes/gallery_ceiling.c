@@ -40,11 +40,11 @@ static void build_rosette(prom_gallery *g, prom_solid *s, float x, float y, floa
                                 {0.55f * radius, -0.02f},  {0.80f * radius, -0.05f},
                                 {0.92f * radius, -0.045f}, {radius, 0}};
     prom_solid_frame old = prom_solid_enter(s, x, y, z, 0);
-    prom_solid_lathe(s, profile, 8, prom_gallery_sides(g, 24), true);
+    prom_solid_lathe(s, profile, 8, prom_gallery_sides(g, 96), true);
     for (int i = 0; i < 12 && g->options.detail > 1; i++) {
         float a = 2 * PI * (float)i / 12;
         prom_gallery_ball(s, 0.66f * radius * cosf(a), -0.03f, 0.66f * radius * sinf(a), 0.06f,
-                          0.05f, 0.06f, prom_gallery_sides(g, 8), 0);
+                          0.05f, 0.06f, prom_gallery_sides(g, 32), 0);
     }
     prom_solid_leave(s, old);
 }
@@ -65,7 +65,7 @@ static void build_coffer(prom_gallery *g, prom_solid *s, const prom_gallery_hole
                          float depth)
 {
     float x0 = h->u0, z0 = h->v0, x1 = h->u1, z1 = h->v1;
-    int levels = 1 + (int)g->options.detail;
+    int levels = 1 + (int)g->options.detail / 2;
     for (int k = 0; k < levels; k++) {
         float low = y + depth * (float)k / (float)levels, inset = 0.06f;
         float high = y + depth * (float)(k + 1) / (float)levels;
@@ -111,7 +111,7 @@ static void build_coffers(prom_gallery *g, const prom_gallery_room *r, prom_soli
         prom_solid_use(s, gilt(g));
         float x = 0.5f * (holes[i].u0 + holes[i].u1), z = 0.5f * (holes[i].v0 + holes[i].v1);
         prom_gallery_ball(s, x, r->y1 + 0.27f, z, 0.11f, 0.06f, 0.11f,
-                          prom_gallery_sides(g, 12), 0);
+                          prom_gallery_sides(g, 48), 0);
     }
 }
 
@@ -152,12 +152,12 @@ static void build_lunette(prom_solid *s, float length, float y, float rise, int 
 
 static void build_vault(prom_gallery *g, const prom_gallery_room *r, prom_solid *s)
 {
-    int steps = prom_gallery_steps(g, 24);
+    int steps = prom_gallery_steps(g, 96);
     float length = r->z1 - r->z0, width = r->x1 - r->x0;
     float rise = fminf(0.5f * width, r->y0 + 5.75f - r->y1);
     vault b = {r->x0, r->x1, r->z0, r->z1, r->y1, rise};
     prom_solid_use(s, white(g));
-    prom_gallery_surface(s, vault_point, &b, steps, prom_gallery_steps(g, 4), width / 2,
+    prom_gallery_surface(s, vault_point, &b, steps, prom_gallery_steps(g, 16), width / 2,
                          length / 2, 0);
     prom_solid_frame old = prom_solid_enter(s, r->x0, 0, r->z0, 0);
     build_lunette(s, width, r->y1, rise, steps);

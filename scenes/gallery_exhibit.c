@@ -60,7 +60,7 @@ static prom_paint glaze(prom_gallery *g, prom_random *r)
 static void build_handle(prom_gallery *g, prom_solid *s, const vessel *b, float side)
 {
     float points[17][3], radii[17];
-    int n = prom_gallery_steps(g, 12) < 16 ? prom_gallery_steps(g, 12) : 16;
+    int n = prom_gallery_steps(g, 48) < 16 ? prom_gallery_steps(g, 48) : 16;
     for (int i = 0; i <= n; i++) {
         float t = (float)i / (float)n, at = 0.52f + 0.40f * t;
         float out = wall_radius(b, at) - 0.004f + 0.05f * sinf(PI * t);
@@ -69,7 +69,7 @@ static void build_handle(prom_gallery *g, prom_solid *s, const vessel *b, float 
         points[i][2] = 0;
         radii[i] = 0.007f;
     }
-    prom_solid_tube(s, (const float(*)[3])points, radii, n + 1, prom_gallery_sides(g, 8));
+    prom_solid_tube(s, (const float(*)[3])points, radii, n + 1, prom_gallery_sides(g, 32));
 }
 
 void prom_gallery_make_vase(prom_gallery *g, prom_solid *s, uint32_t v, prom_random *r)
@@ -82,8 +82,8 @@ void prom_gallery_make_vase(prom_gallery *g, prom_solid *s, uint32_t v, prom_ran
                 .height = prom_random_between(r, 0.22f, 0.34f),
                 .wall = 0.006f};
     prom_solid_use(s, glaze(g, r));
-    prom_gallery_surface(s, vessel_point, &b, prom_gallery_sides(g, 32),
-                         prom_gallery_steps(g, 28), 2, 1, PROM_GALLERY_CLOSED_U);
+    prom_gallery_surface(s, vessel_point, &b, prom_gallery_sides(g, 128),
+                         prom_gallery_steps(g, 112), 2, 1, PROM_GALLERY_CLOSED_U);
     for (int k = -1; k <= 1 && v % 3 == 1; k += 2) build_handle(g, s, &b, (float)k);
 }
 
@@ -95,8 +95,8 @@ void prom_gallery_make_bowl(prom_gallery *g, prom_solid *s, uint32_t v, prom_ran
                 .height = prom_random_between(r, 0.06f, 0.12f),
                 .wall = 0.006f};
     prom_solid_use(s, glaze(g, r));
-    prom_gallery_surface(s, vessel_point, &b, prom_gallery_sides(g, 32),
-                         prom_gallery_steps(g, 20), 2, 1, PROM_GALLERY_CLOSED_U);
+    prom_gallery_surface(s, vessel_point, &b, prom_gallery_sides(g, 128),
+                         prom_gallery_steps(g, 80), 2, 1, PROM_GALLERY_CLOSED_U);
 }
 
 // ---- nature
@@ -129,9 +129,9 @@ static void build_prism(prom_solid *s, const float foot[3], const float axis[3],
 void prom_gallery_make_crystal(prom_gallery *g, prom_solid *s, uint32_t v, prom_random *r)
 {
     static const uint32_t tints[] = {0xb48ad0, 0x9fd0c8, 0xf0eaf4, 0xe8b870, 0x8ab0e0};
-    int count = prom_gallery_steps(g, 24);
+    int count = prom_gallery_steps(g, 96);
     prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_TERRAZZO, 0x8a8478, 0.3f));
-    prom_gallery_ball(s, 0, 0.015f, 0, 0.10f, 0.03f, 0.085f, prom_gallery_sides(g, 16), 0);
+    prom_gallery_ball(s, 0, 0.015f, 0, 0.10f, 0.03f, 0.085f, prom_gallery_sides(g, 64), 0);
     prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_CERAMIC, tints[v % 5], 0.2f));
     for (int i = 0; i < count; i++) {
         float a = 2 * PI * prom_random_unit(r), out = sqrtf(prom_random_unit(r));
@@ -166,8 +166,8 @@ void prom_gallery_make_shell(prom_gallery *g, prom_solid *s, uint32_t v, prom_ra
                .tall = prom_random_between(r, 0.06f, 0.22f),
                .ribs = 6 + (float)prom_random_below(r, 10)};
     prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_STRIPES, tints[v % 4], 1));
-    prom_gallery_surface(s, shell_point, &h, prom_gallery_sides(g, 16),
-                         prom_gallery_steps(g, 112), 1, 6, PROM_GALLERY_CLOSED_U);
+    prom_gallery_surface(s, shell_point, &h, prom_gallery_sides(g, 64),
+                         prom_gallery_steps(g, 448), 1, 6, PROM_GALLERY_CLOSED_U);
 }
 
 void prom_gallery_make_coins(prom_gallery *g, prom_solid *s, uint32_t v, prom_random *r)
@@ -183,7 +183,7 @@ void prom_gallery_make_coins(prom_gallery *g, prom_solid *s, uint32_t v, prom_ra
                                              metals[(v + prom_random_below(r, 2)) % 3], 0.1f));
         prom_solid_frame old = prom_solid_enter(s, -0.11f + 0.044f * (float)(i % 6), 0.012f,
                                                 -0.07f + 0.046f * (float)(i / 6), 0);
-        prom_solid_lathe(s, coin, 5, prom_gallery_sides(g, 16), false);
+        prom_solid_lathe(s, coin, 5, prom_gallery_sides(g, 64), false);
         prom_solid_leave(s, old);
     }
 }
@@ -210,11 +210,11 @@ void prom_gallery_make_mask(prom_gallery *g, prom_solid *s, uint32_t v, prom_ran
 {
     static const uint32_t tints[] = {0xe6bf62, 0x7fa890, 0xb07a4e, 0x5a4638};
     const float depth = prom_random_between(r, 0.8f, 1.4f);
-    int steps = prom_gallery_steps(g, 36);
+    int steps = prom_gallery_steps(g, 144);
     prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_METAL, tints[v % 4], 0.4f));
     prom_gallery_surface(s, mask_point, &depth, steps, steps, 1, 1, 0);
     // Its hollow back, so that it may be seen from behind.
-    prom_gallery_ball(s, 0, 0.20f, 0.012f, 0.084f, 0.108f, 0.012f, prom_gallery_sides(g, 16),
+    prom_gallery_ball(s, 0, 0.20f, 0.012f, 0.084f, 0.108f, 0.012f, prom_gallery_sides(g, 64),
                       0);
     prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_METAL, 0x6a6660, 0.4f));
     prom_solid_box(s, -0.005f, 0.01f, 0.005f, 0.005f, 0.12f, 0.015f, PROM_FACE_SIDES);
@@ -231,7 +231,8 @@ static void build_stand(prom_gallery *g, prom_solid *s, float half, float height
     prom_solid_box(s, -foot, 0, -foot, foot, 0.10f, foot, sides);
     prom_solid_box(s, -half, 0.10f, -half, half, height - 0.08f, half, PROM_FACE_SIDES);
     prom_solid_box(s, -foot, height - 0.08f, -foot, foot, height, foot, PROM_FACE_ALL);
-    for (int k = 0; k < 4; k++) { // a moulding under the top, a field on each face
+    for (int k = 0; k < 4 && g->options.detail > 1;
+         k++) { // a moulding under the top, a field on each face
         prom_solid_frame old = prom_solid_enter(s, 0, 0, 0, PI / 2 * (float)k);
         const float profile[][2] = {{height - 0.16f, half},
                                     {height - 0.14f, half + 0.015f},
@@ -242,7 +243,6 @@ static void build_stand(prom_gallery *g, prom_solid *s, float half, float height
                        half + 0.012f, PROM_FACE_NO_BACK);
         prom_solid_leave(s, old);
     }
-    (void)g;
 }
 
 void prom_gallery_make_pedestal(prom_gallery *g, prom_solid *s, uint32_t v, prom_random *r)
@@ -296,7 +296,7 @@ void prom_gallery_make_table_vitrine(prom_gallery *g, prom_solid *s, uint32_t v,
             {0.022f, 0}, {0.03f, 0.10f}, {0.024f, 0.16f}, {0.034f, 0.55f}, {0.04f, 0.66f}};
         prom_solid_frame old = prom_solid_enter(s, k & 1 ? x - 0.06f : 0.06f - x, 0,
                                                 k & 2 ? z - 0.06f : 0.06f - z, 0);
-        prom_solid_lathe(s, leg, 5, prom_gallery_sides(g, 12), true);
+        prom_solid_lathe(s, leg, 5, prom_gallery_sides(g, 48), true);
         prom_solid_leave(s, old);
     }
     prom_solid_box(s, -x, top - 0.20f, -z, x, top - 0.005f, z, PROM_FACE_ALL);

@@ -284,7 +284,7 @@ void prom_gallery_furnish(prom_gallery *g, uint32_t room, uint32_t parent)
         return;
     case PROM_GALLERY_STAIRS:
         furnish_stairs(&p);
-        return;
+        break;
     case PROM_GALLERY_COURT:
         furnish_court(&p);
         return;

@@ -31,7 +31,10 @@ static void build_leg(prom_gallery *g, prom_solid *s, float x, float z, float to
                             {0.7f * r, 0.70f * top}, {1.1f * r, 0.80f * top},
                             {1.1f * r, top}};
     prom_solid_frame old = prom_solid_enter(s, x, 0, z, 0);
-    prom_solid_lathe(s, leg, 7, prom_gallery_sides(g, 12), true);
+    if (g->options.detail == 1)
+        prom_solid_box(s, -0.8f * r, 0, -0.8f * r, 0.8f * r, top, 0.8f * r, PROM_FACE_SIDES);
+    else
+        prom_solid_lathe(s, leg, 7, prom_gallery_sides(g, 48), true);
     prom_solid_leave(s, old);
 }
 
@@ -55,8 +58,8 @@ static void build_cushion(prom_gallery *g, prom_solid *s, float x, float y, floa
                           float hy, float hz)
 {
     cushion c = {x, y, z, hx, hy, hz};
-    prom_gallery_surface(s, cushion_point, &c, prom_gallery_sides(g, 24),
-                         prom_gallery_steps(g, 10), 4 * hx / 0.3f, 1, PROM_GALLERY_CLOSED_U);
+    prom_gallery_surface(s, cushion_point, &c, prom_gallery_sides(g, 96),
+                         prom_gallery_steps(g, 40), 4 * hx / 0.3f, 1, PROM_GALLERY_CLOSED_U);
 }
 
 // ---- seats
@@ -91,7 +94,7 @@ void prom_gallery_make_chair(prom_gallery *g, prom_solid *s, uint32_t v, prom_ra
                                   {0.19f * (float)k, 0.72f, -0.20f},
                                   {0.18f * (float)k, 0.98f, -0.25f}};
         prom_solid_tube(s, post, (const float[]){0.020f, 0.018f, 0.014f}, 3,
-                        prom_gallery_sides(g, 8));
+                        prom_gallery_sides(g, 32));
     }
     for (int k = 0; k < 3; k++) {
         float y = 0.58f + 0.16f * (float)k, z = -0.19f - 0.022f * (float)(k * k) * 0.6f;
@@ -131,7 +134,7 @@ void prom_gallery_make_desk(prom_gallery *g, prom_solid *s, uint32_t v, prom_ran
     prom_solid_use(s, brass(g));
     for (int k = -1; k <= 1; k++)
         prom_gallery_ball(s, 0.49f * (float)k, 0.665f, 0.385f, 0.014f, 0.014f, 0.014f,
-                          prom_gallery_sides(g, 8), 0);
+                          prom_gallery_sides(g, 32), 0);
     // A blotter, books, papers and a lamp.
     prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_FABRIC, 0x4f6a52, 0.3f));
     prom_solid_box(s, -0.35f, 0.765f, -0.15f, 0.35f, 0.770f, 0.34f, NO_BOTTOM);
@@ -151,12 +154,12 @@ void prom_gallery_make_desk(prom_gallery *g, prom_solid *s, uint32_t v, prom_ran
         {0.09f, 0}, {0.09f, 0.015f}, {0.02f, 0.03f}, {0.014f, 0.30f}, {0.012f, 0.40f}};
     prom_solid_frame old = prom_solid_enter(s, 0.56f, 0.765f, -0.20f, 0);
     prom_solid_use(s, brass(g));
-    prom_solid_lathe(s, lamp, 5, prom_gallery_sides(g, 16), true);
+    prom_solid_lathe(s, lamp, 5, prom_gallery_sides(g, 64), true);
     prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_CERAMIC, 0x5f9a72, 0.5f));
     const float shade[][2] = {{0.13f, 0.32f}, {0.11f, 0.40f}, {0.05f, 0.45f}, {0.01f, 0.46f}};
-    prom_solid_lathe(s, shade, 4, prom_gallery_sides(g, 16), true);
+    prom_solid_lathe(s, shade, 4, prom_gallery_sides(g, 64), true);
     prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_PLAIN, 0xfff2c8, 1));
-    prom_gallery_ball(s, 0, 0.35f, 0, 0.10f, 0.03f, 0.10f, prom_gallery_sides(g, 8),
+    prom_gallery_ball(s, 0, 0.35f, 0, 0.10f, 0.03f, 0.10f, prom_gallery_sides(g, 32),
                       PROM_GALLERY_LIT);
     prom_solid_leave(s, old);
 }
@@ -169,8 +172,8 @@ void prom_gallery_make_table(prom_gallery *g, prom_solid *s, uint32_t v, prom_ra
     const float top[][2] = {
         {0.50f, 0.68f}, {0.55f, 0.70f}, {0.55f, 0.72f}, {0.53f, 0.735f}, {0, 0.735f}};
     prom_solid_use(s, wood(g, v));
-    prom_solid_lathe(s, foot, 6, prom_gallery_sides(g, 16), true);
-    prom_solid_lathe(s, top, 5, prom_gallery_sides(g, 32), false);
+    prom_solid_lathe(s, foot, 6, prom_gallery_sides(g, 64), true);
+    prom_solid_lathe(s, top, 5, prom_gallery_sides(g, 128), false);
     for (int k = 0; k < 3; k++) {
         float a = 2 * PI * (float)k / 3;
         const float leg[4][3] = {{0.03f * cosf(a), 0.20f, 0.03f * sinf(a)},
@@ -178,7 +181,7 @@ void prom_gallery_make_table(prom_gallery *g, prom_solid *s, uint32_t v, prom_ra
                                  {0.32f * cosf(a), 0.05f, 0.32f * sinf(a)},
                                  {0.38f * cosf(a), 0.02f, 0.38f * sinf(a)}};
         prom_solid_tube(s, leg, (const float[]){0.04f, 0.035f, 0.028f, 0.02f}, 4,
-                        prom_gallery_sides(g, 8));
+                        prom_gallery_sides(g, 32));
     }
 }
 
@@ -194,7 +197,7 @@ void prom_gallery_make_console(prom_gallery *g, prom_solid *s, uint32_t v, prom_
                                  {x, 0.14f, 0.12f},
                                  {x, 0, 0.16f}};
         prom_solid_tube(s, leg, (const float[]){0.04f, 0.045f, 0.035f, 0.028f, 0.03f}, 5,
-                        prom_gallery_sides(g, 8));
+                        prom_gallery_sides(g, 32));
     }
     prom_solid_box(s, -0.54f, 0.74f, 0, 0.54f, 0.83f, 0.38f, PROM_FACE_ALL);
     prom_solid_box(s, -0.46f, 0.10f, 0.02f, 0.46f, 0.13f, 0.20f, PROM_FACE_ALL);
@@ -291,7 +294,7 @@ static void build_leaf(prom_gallery *g, prom_solid *s, float yaw, float y, float
     prom_solid_frame old = prom_solid_enter(s, 0, y, 0, 0);
     for (int k = 0; k < 2; k++) {
         leaf l = {yaw, reach, rise, droop, width, (float)k};
-        prom_gallery_surface(s, leaf_point, &l, 2, prom_gallery_steps(g, 12), 1, 2, 0);
+        prom_gallery_surface(s, leaf_point, &l, 2, prom_gallery_steps(g, 48), 1, 2, 0);
     }
     prom_solid_leave(s, old);
 }
@@ -302,10 +305,10 @@ void prom_gallery_make_plant(prom_gallery *g, prom_solid *s, uint32_t v, prom_ra
     const float pot[][2] = {{0.15f, 0},     {0.19f, 0.10f}, {0.23f, 0.34f}, {0.25f, 0.36f},
                             {0.25f, 0.42f}, {0.22f, 0.42f}, {0.21f, 0.36f}, {0, 0.36f}};
     prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_CERAMIC, pots[v % 3], 1));
-    prom_solid_lathe(s, pot, 8, prom_gallery_sides(g, 24), false);
+    prom_solid_lathe(s, pot, 8, prom_gallery_sides(g, 96), false);
     prom_solid_use(
         s, prom_gallery_paint(g, PROM_GALLERY_LEAVES, v % 2 ? 0xe8f4d8 : 0xc8e8c0, 0.5f));
-    int leaves = prom_gallery_steps(g, 26);
+    int leaves = prom_gallery_steps(g, 104);
     for (int i = 0; i < leaves; i++) {
         float t = (float)i / (float)leaves;
         build_leaf(g, s, 2.4f * (float)i, 0.36f + 0.5f * t * t,
@@ -317,7 +320,7 @@ void prom_gallery_make_plant(prom_gallery *g, prom_solid *s, uint32_t v, prom_ra
     if (v % 2) return;
     prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_WOOD, 0x8a6a48, 0.5f));
     const float stem[2][3] = {{0, 0.3f, 0}, {0, 0.9f, 0}};
-    prom_solid_tube(s, stem, (const float[]){0.03f, 0.02f}, 2, prom_gallery_sides(g, 8));
+    prom_solid_tube(s, stem, (const float[]){0.03f, 0.02f}, 2, prom_gallery_sides(g, 32));
 }
 
 void prom_gallery_make_ropes(prom_gallery *g, prom_solid *s, uint32_t v, prom_random *r)
@@ -333,11 +336,11 @@ void prom_gallery_make_ropes(prom_gallery *g, prom_solid *s, uint32_t v, prom_ra
         const float *a = corner[k], *b = corner[(k + 1) % 4];
         prom_solid_frame old = prom_solid_enter(s, a[0], 0, a[1], 0);
         prom_solid_use(s, brass(g));
-        prom_solid_lathe(s, post, 10, prom_gallery_sides(g, 16), true);
+        prom_solid_lathe(s, post, 10, prom_gallery_sides(g, 64), true);
         prom_solid_leave(s, old);
         prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_FABRIC, 0xa83a3a, 0.1f));
         float points[33][3], radii[33];
-        int n = prom_gallery_steps(g, 12) < 32 ? prom_gallery_steps(g, 12) : 32;
+        int n = prom_gallery_steps(g, 48) < 32 ? prom_gallery_steps(g, 48) : 32;
         for (int i = 0; i <= n; i++) {
             float t = (float)i / (float)n;
             points[i][0] = a[0] + (b[0] - a[0]) * t;
@@ -345,7 +348,7 @@ void prom_gallery_make_ropes(prom_gallery *g, prom_solid *s, uint32_t v, prom_ra
             points[i][2] = a[1] + (b[1] - a[1]) * t;
             radii[i] = 0.018f;
         }
-        prom_solid_tube(s, (const float(*)[3])points, radii, n + 1, prom_gallery_sides(g, 8));
+        prom_solid_tube(s, (const float(*)[3])points, radii, n + 1, prom_gallery_sides(g, 32));
     }
 }
 
@@ -354,14 +357,18 @@ void prom_gallery_make_radiator(prom_gallery *g, prom_solid *s, uint32_t v, prom
     (void)v;
     (void)r;
     prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_PLAIN, 0xf0ece2, 1));
-    for (int i = 0; i < 14; i++)
-        for (int k = 0; k < 2; k++) {
-            float x = -0.52f + 0.08f * (float)i, z = k ? 0.17f : 0.09f;
-            const float rib[4][3] = {
-                {x, 0.10f, z}, {x, 0.16f, z}, {x, 0.62f, z}, {x, 0.68f, z}};
-            prom_solid_tube(s, rib, (const float[]){0.012f, 0.030f, 0.030f, 0.012f}, 4,
-                            prom_gallery_sides(g, 8));
+    for (int i = 0; i < 11; i++) {
+        float x = -0.50f + 0.10f * (float)i;
+        if (g->options.detail == 1) {
+            prom_solid_box(s, x - 0.035f, 0.10f, 0.09f, x + 0.035f, 0.69f, 0.17f,
+                           PROM_FACE_ALL & ~(PROM_FACE_BOTTOM | PROM_FACE_BACK));
+            continue;
         }
+        const float rib[4][3] = {
+            {x, 0.10f, 0.13f}, {x, 0.17f, 0.13f}, {x, 0.62f, 0.13f}, {x, 0.69f, 0.13f}};
+        prom_solid_tube(s, rib, (const float[]){0.012f, 0.045f, 0.045f, 0.012f}, 4,
+                        prom_gallery_sides(g, 32));
+    }
     for (int k = 0; k < 4; k++)
         prom_solid_box(s, k & 1 ? 0.48f : -0.54f, 0, k & 2 ? 0.15f : 0.07f,
                        k & 1 ? 0.54f : -0.48f, 0.12f, k & 2 ? 0.19f : 0.11f, NO_BOTTOM);
@@ -391,11 +398,11 @@ void prom_gallery_make_globe(prom_gallery *g, prom_solid *s, uint32_t v, prom_ra
                                  {0.22f * cosf(a), 0.25f, 0.22f * sinf(a)},
                                  {0.36f * cosf(a), 0.72f, 0.36f * sinf(a)}};
         prom_solid_tube(s, leg, (const float[]){0.025f, 0.02f, 0.025f}, 3,
-                        prom_gallery_sides(g, 8));
+                        prom_gallery_sides(g, 32));
     }
     const float ring[][2] = {
         {0.36f, 0.70f}, {0.42f, 0.70f}, {0.42f, 0.74f}, {0.36f, 0.74f}, {0.36f, 0.70f}};
-    prom_solid_lathe(s, ring, 5, prom_gallery_sides(g, 32), false);
+    prom_solid_lathe(s, ring, 5, prom_gallery_sides(g, 128), false);
     prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_TERRAZZO, 0x9fc0d0, 1));
-    prom_gallery_ball(s, 0, 0.74f, 0, 0.34f, 0.34f, 0.34f, prom_gallery_sides(g, 32), 0);
+    prom_gallery_ball(s, 0, 0.74f, 0, 0.34f, 0.34f, 0.34f, prom_gallery_sides(g, 128), 0);
 }

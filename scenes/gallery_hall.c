@@ -23,7 +23,7 @@ static void fluted(const void *context, float u, float v, float p[3])
 static void build_volute(prom_gallery *g, prom_solid *s, float x, float y, float z, float size)
 {
     float points[96][3], radii[96];
-    int n = prom_gallery_steps(g, 24);
+    int n = prom_gallery_steps(g, 96);
     n = n < 96 ? n : 95;
     for (int i = 0; i <= n; i++) {
         float t = (float)i / (float)n, a = 4.5f * PI * t, r = size * (1 - 0.85f * t);
@@ -32,9 +32,9 @@ static void build_volute(prom_gallery *g, prom_solid *s, float x, float y, float
         points[i][2] = z;
         radii[i] = 0.16f * size * (1.1f - 0.5f * t);
     }
-    prom_solid_tube(s, (const float(*)[3])points, radii, n + 1, prom_gallery_sides(g, 8));
+    prom_solid_tube(s, (const float(*)[3])points, radii, n + 1, prom_gallery_sides(g, 32));
     prom_gallery_ball(s, x, y, z, 0.22f * size, 0.22f * size, 0.16f * size,
-                      prom_gallery_sides(g, 8), 0);
+                      prom_gallery_sides(g, 32), 0);
 }
 
 void prom_gallery_make_column(prom_gallery *g, prom_solid *s, uint32_t v, prom_random *random)
@@ -48,19 +48,19 @@ void prom_gallery_make_column(prom_gallery *g, prom_solid *s, uint32_t v, prom_r
     const float base[][2] = {{0.36f, 0.16f}, {0.37f, 0.20f}, {0.37f, 0.25f},
                              {0.33f, 0.28f}, {0.30f, 0.31f}, {0.31f, 0.34f},
                              {0.33f, 0.37f}, {0.31f, 0.41f}, {r, 0.44f}};
-    prom_solid_lathe(s, base, 9, prom_gallery_sides(g, 24), true);
+    prom_solid_lathe(s, base, 9, prom_gallery_sides(g, 96), true);
     const float shaft[6] = {r,           0.85f * r, 0.44f,
                             top - 0.42f, 20,        g->options.detail > 1 ? 0.022f : 0};
-    prom_gallery_surface(s, fluted, shaft, prom_gallery_sides(g, 80) / 2,
-                         prom_gallery_steps(g, 16), 2, 4, PROM_GALLERY_CLOSED_U);
+    prom_gallery_surface(s, fluted, shaft, prom_gallery_sides(g, 320) / 2,
+                         prom_gallery_steps(g, 64), 2, 4, PROM_GALLERY_CLOSED_U);
     float y = top - 0.42f;
     const float head[][2] = {{0.22f, y},         {0.25f, y + 0.02f}, {0.25f, y + 0.05f},
                              {0.23f, y + 0.07f}, {0.24f, y + 0.14f}, {0.31f, y + 0.26f},
                              {0.31f, y + 0.30f}};
-    prom_solid_lathe(s, head, 7, prom_gallery_sides(g, 24), true);
+    prom_solid_lathe(s, head, 7, prom_gallery_sides(g, 96), true);
     prom_solid_box(s, -0.36f, y + 0.30f, -0.36f, 0.36f, top, 0.36f,
                    PROM_FACE_ALL & ~PROM_FACE_TOP);
-    for (int k = 0; k < 4; k++)
+    for (int k = 0; k < 4 && g->options.detail > 1; k++)
         build_volute(g, s, k & 1 ? 0.27f : -0.27f, y + 0.17f, k & 2 ? 0.27f : -0.27f, 0.12f);
 }
 
@@ -134,7 +134,7 @@ static void build_trusses(prom_gallery *g, const prom_gallery_room *r, prom_soli
 {
     float y = PROM_GALLERY_ROOF + 0.2f, x0 = r->x0 + 1.7f, x1 = r->x1 - 1.7f;
     float cx = 0.5f * (x0 + x1), rise = 0.22f * (x1 - x0);
-    int n = (int)((r->z1 - r->z0) / 3.4f), sides = prom_gallery_sides(g, 8);
+    int n = (int)((r->z1 - r->z0) / 3.4f), sides = prom_gallery_sides(g, 32);
     prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_METAL, 0x8d9a98, 1.0f));
     for (int i = 0; i < n; i++) {
         float z = r->z0 + 1.7f + (r->z1 - r->z0 - 3.4f) * ((float)i + 0.5f) / (float)n;

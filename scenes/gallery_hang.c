@@ -37,7 +37,7 @@ static void build_side(prom_solid *s, const float (*profile)[2], int points, flo
 static void build_frame(prom_gallery *g, prom_solid *s, uint32_t number, float w, float h)
 {
     float profile[40][2] = {{0, 0.015f}, {0.012f, 0.028f}, {0.024f, 0.026f}};
-    int n = 3, steps = prom_gallery_steps(g, 6);
+    int n = 3, steps = prom_gallery_steps(g, 24);
     float b = 0.05f + 0.05f * fminf(w, h);
     for (int i = 0; i <= steps; i++) { // a hollow, then the outer edge
         float t = (float)i / (float)steps;
@@ -45,8 +45,13 @@ static void build_frame(prom_gallery *g, prom_solid *s, uint32_t number, float w
         profile[n++][1] =
             0.024f + 0.045f * (1 - cosf(0.5f * PI * t)) + 0.006f * sinf(2 * PI * t);
     }
-    profile[n][0] = 0.04f + b;
-    profile[n++][1] = 0.060f;
+    if (g->options.detail > 1) {
+        profile[n][0] = 0.04f + b;
+        profile[n++][1] = 0.060f;
+    } else { // a slope between the inner and the outer edge
+        memcpy(profile[1], profile[2 + 1 + steps], sizeof profile[1]);
+        n = 2;
+    }
     profile[n][0] = 0.042f + b;
     profile[n++][1] = 0;
     for (int k = 0; k < 4; k++) {
@@ -86,7 +91,7 @@ static void build_frame(prom_gallery *g, prom_solid *s, uint32_t number, float w
     for (int k = 0; k < 4 && g->options.detail > 1; k++) { // ornaments on the corners
         float x = (k & 1 ? 1.0f : -1.0f) * (w / 2 + 0.5f * b),
               y = (k & 2 ? 1.0f : -1.0f) * (h / 2 + 0.5f * b);
-        prom_gallery_ball(s, x, y, 0.05f, 0.5f * b, 0.5f * b, 0.03f, prom_gallery_sides(g, 12),
+        prom_gallery_ball(s, x, y, 0.05f, 0.5f * b, 0.5f * b, 0.03f, prom_gallery_sides(g, 48),
                           0);
     }
 }
@@ -115,8 +120,9 @@ static prom_gallery_painting make_painting(prom_gallery *g, uint32_t number)
     return p;
 }
 
-// The next painting that is at most so wide and high (with its frame), or NULL.
-static const prom_gallery_painting *next_painting(prom_gallery *g, float width, float height)
+// The next painting that is at most so wide and high (with its frame), if there is one.
+static bool next_painting(prom_gallery *g, float width, float height,
+                          prom_gallery_painting *out)
 {
     for (int tries = 0; tries < 11; tries++) {
         if (g->paintings.count < g->painting_limit) {
@@ -124,10 +130,10 @@ static const prom_gallery_painting *next_painting(prom_gallery *g, float width, 
             prom_array_push(&g->paintings, made);
         }
         uint32_t n = g->next_painting++ % (uint32_t)g->paintings.count;
-        const prom_gallery_painting *p = &g->paintings.data[n];
-        if (p->width + 0.3f <= width && p->height + 0.3f <= height) return p;
+        *out = g->paintings.data[n];
+        if (out->width + 0.3f <= width && out->height + 0.3f <= height) return true;
     }
-    return NULL;
+    return false;
 }
 
 // ---- a wall
@@ -194,21 +200,19 @@ static void put_painting(const side *w, const prom_gallery_painting *p, float u,
 static void hang_row(const side *w, prom_solid *labels, float u0, float u1, float low,
                      float high, bool close)
 {
-    const prom_gallery_painting *row[12];
+    prom_gallery_painting row[12];
     float width = 0, most = u1 - u0, middle = 0.5f * (low + high);
     int n = 0;
     while (n < 12) {
         float room = most - width;
-        const prom_gallery_painting *p =
-            room > 0.8f ? next_painting(w->g, fminf(room, n ? 2.2f : 3), high - low) : NULL;
-        if (!p) break;
-        row[n++] = p;
-        width += p->width + 0.3f + (close ? 0.1f : 0.7f);
+        if (room < 0.8f || !next_painting(w->g, fminf(room, n ? 2.2f : 3), high - low, &row[n]))
+            break;
+        width += row[n++].width + 0.3f + (close ? 0.1f : 0.7f);
     }
     float gap = (most - width) / (float)(n + 1), u = u0 + gap;
     for (int i = 0; i < n; i++) {
-        float span = row[i]->width + 0.3f + (close ? 0.1f : 0.7f);
-        put_painting(w, row[i], u + span / 2, middle);
+        float span = row[i].width + 0.3f + (close ? 0.1f : 0.7f);
+        put_painting(w, &row[i], u + span / 2, middle);
         if (labels) put_label(w, labels, u + span - 0.12f);
         u += span + gap;
     }
@@ -256,7 +260,7 @@ static void furnish_span(const side *w, prom_solid *labels, prom_gallery_kind ki
         return;
     }
     case PROM_GALLERY_CORRIDOR:
-        for (int i = 0, n = (int)(span / 2.4f); i < n; i++) {
+        for (int i = 0, n = (int)fmaxf(span / 2.8f, 1); i < n; i++) {
             float u = f->u0 + span * ((float)i + 0.5f) / (float)n;
             if (i % 2)
                 hang_row(w, NULL, u - 1.1f, u + 1.1f, w->floor + 1.1f, w->floor + 2.7f, true);
@@ -346,6 +350,31 @@ static void hang_side(side *w, prom_gallery_side which, prom_gallery_kind kind,
     for (int i = 0; i < n; i++) furnish_span(w, labels, kind, &spans[i]);
 }
 
+// Pictures to be seen from the flights and landings of the stairs.
+static void hang_stairs(const side *w, prom_gallery_side which)
+{
+    float end = w->face.length - CORNER, half = 0.5f * PROM_GALLERY_UPPER;
+    float door = 0.5f * w->face.length - 1.1f;
+    switch (which) {
+    case PROM_GALLERY_EAST:
+        hang_row(w, NULL, 1.3f, end - 0.8f, half + 2.6f, half + 5.2f, true);
+        break;
+    case PROM_GALLERY_WEST:
+        hang_row(w, NULL, 1.3f, end - 0.8f, 2.2f, 4.6f, true);
+        break;
+    case PROM_GALLERY_SOUTH:
+        hang_row(w, NULL, CORNER, door - 0.2f, half + 1, half + 2.9f, true);
+        hang_row(w, NULL, w->face.length - door + 0.2f, end, half + 1, half + 2.9f, true);
+        break;
+    default:
+        for (int k = 0; k < 2; k++) {
+            float y = k ? PROM_GALLERY_UPPER : 0;
+            hang_row(w, NULL, CORNER, door, y + 0.9f, y + 2.7f, true);
+            hang_row(w, NULL, w->face.length - door, end, y + 0.9f, y + 2.7f, true);
+        }
+    }
+}
+
 void prom_gallery_hang(prom_gallery *g, uint32_t room, uint32_t parent, prom_random *random)
 {
     const prom_gallery_room *r = &g->plan.rooms.data[room];
@@ -354,7 +383,9 @@ void prom_gallery_hang(prom_gallery *g, uint32_t room, uint32_t parent, prom_ran
     for (int k = 0; k < 4; k++) {
         side w = {g,     room,  parent, prom_gallery_room_face(r, (prom_gallery_side)k),
                   r->y0, r->y1, random};
-        if (r->kind == PROM_GALLERY_HALL) {
+        if (r->kind == PROM_GALLERY_STAIRS) {
+            hang_stairs(&w, (prom_gallery_side)k);
+        } else if (r->kind == PROM_GALLERY_HALL) {
             // Its ground floor is low under the gallery; large pictures hang on that above.
             w.top = 5;
             hang_side(&w, (prom_gallery_side)k, PROM_GALLERY_SCULPTURES, &labels);

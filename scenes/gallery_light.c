@@ -35,12 +35,12 @@ static void build_candle(prom_gallery *g, prom_solid *s, float x, float y, float
     const float cup[][2] = {{0.008f, -0.03f}, {0.05f, 0}, {0.05f, 0.012f}, {0.014f, 0.014f}};
     prom_solid_frame old = prom_solid_enter(s, x, y, z, 0);
     prom_solid_use(s, brass(g));
-    prom_solid_lathe(s, cup, 4, prom_gallery_sides(g, 8), true);
+    prom_solid_lathe(s, cup, 4, prom_gallery_sides(g, 32), true);
     prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_PLAIN, 0xf6f0e0, 1));
     const float wax[2][3] = {{0, 0, 0}, {0, 0.10f, 0}};
-    prom_solid_tube(s, wax, (const float[]){0.013f, 0.012f}, 2, prom_gallery_sides(g, 8));
+    prom_solid_tube(s, wax, (const float[]){0.013f, 0.012f}, 2, prom_gallery_sides(g, 32));
     prom_solid_use(s, light(g));
-    prom_gallery_ball(s, 0, 0.135f, 0, 0.016f, 0.038f, 0.016f, prom_gallery_sides(g, 8),
+    prom_gallery_ball(s, 0, 0.135f, 0, 0.016f, 0.038f, 0.016f, prom_gallery_sides(g, 32),
                       PROM_GALLERY_LIT);
     prom_solid_leave(s, old);
 }
@@ -48,7 +48,7 @@ static void build_candle(prom_gallery *g, prom_solid *s, float x, float y, float
 static void build_ring(prom_gallery *g, prom_solid *s, int arms, float reach, float y,
                        float phase)
 {
-    int n = prom_gallery_steps(g, 12) < 24 ? prom_gallery_steps(g, 12) : 24;
+    int n = prom_gallery_steps(g, 48) < 24 ? prom_gallery_steps(g, 48) : 24;
     for (int i = 0; i < arms; i++) {
         float a = phase + 2 * PI * (float)i / (float)arms, points[25][3], radii[25];
         for (int k = 0; k <= n; k++) {
@@ -59,10 +59,10 @@ static void build_ring(prom_gallery *g, prom_solid *s, int arms, float reach, fl
             radii[k] = 0.013f - 0.004f * t;
         }
         prom_solid_use(s, brass(g));
-        prom_solid_tube(s, (const float(*)[3])points, radii, n + 1, prom_gallery_sides(g, 8));
+        prom_solid_tube(s, (const float(*)[3])points, radii, n + 1, prom_gallery_sides(g, 32));
         build_candle(g, s, points[n][0], points[n][1] + 0.03f, points[n][2]);
         prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_PLAIN, 0xe8f2f6, 1));
-        int drops = 2 << (g->options.detail - 1);
+        int drops = g->options.detail == 1 ? 1 : 2 << (g->options.detail - 1);
         for (int k = 0; k < drops; k++) {
             float t = (float)(k + 1) / (float)drops;
             const float *p = points[(int)(t * (float)n)];
@@ -80,9 +80,10 @@ void prom_gallery_make_chandelier(prom_gallery *g, prom_solid *s, uint32_t v, pr
         {0.010f, -0.06f}, {0.09f, -0.03f}, {0.10f, 0}};
     int arms = v % 2 ? 8 : 12;
     prom_solid_use(s, brass(g));
-    prom_solid_lathe(s, body, 13, prom_gallery_sides(g, 16), true);
+    prom_solid_lathe(s, body, 13, prom_gallery_sides(g, 64), true);
     build_ring(g, s, arms, 0.62f, -1.25f, 0);
     if (v % 3 != 1) build_ring(g, s, arms / 2, 0.36f, -0.92f, 0.26f);
+    if (g->options.detail == 1) return;
     // Strings of drops from the crown to the arms.
     prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_PLAIN, 0xe8f2f6, 1));
     int beads = 3 << g->options.detail;
@@ -107,10 +108,10 @@ void prom_gallery_make_pendant(prom_gallery *g, prom_solid *s, uint32_t v, prom_
                             {0.04f, -drop + 0.05f},
                             {0.012f, -drop + 0.09f}};
     prom_solid_use(s, brass(g));
-    prom_solid_tube(s, rod, (const float[]){0.010f, 0.010f}, 2, prom_gallery_sides(g, 8));
-    prom_solid_lathe(s, cap, 4, prom_gallery_sides(g, 16), true);
+    prom_solid_tube(s, rod, (const float[]){0.010f, 0.010f}, 2, prom_gallery_sides(g, 32));
+    prom_solid_lathe(s, cap, 4, prom_gallery_sides(g, 64), true);
     prom_solid_use(s, light(g));
-    prom_gallery_ball(s, 0, -drop - 0.20f, 0, 0.19f, 0.18f, 0.19f, prom_gallery_sides(g, 24),
+    prom_gallery_ball(s, 0, -drop - 0.20f, 0, 0.19f, 0.18f, 0.19f, prom_gallery_sides(g, 96),
                       PROM_GALLERY_LIT);
 }
 
@@ -119,7 +120,7 @@ void prom_gallery_make_sconce(prom_gallery *g, prom_solid *s, uint32_t v, prom_r
     (void)v;
     (void)r;
     prom_solid_use(s, brass(g));
-    prom_gallery_ball(s, 0, 0, 0.02f, 0.06f, 0.16f, 0.025f, prom_gallery_sides(g, 16), 0);
+    prom_gallery_ball(s, 0, 0, 0.02f, 0.06f, 0.16f, 0.025f, prom_gallery_sides(g, 64), 0);
     for (int k = -1; k <= 1; k += 2) {
         float f = (float)k;
         const float arm[5][3] = {{0, -0.02f, 0.03f},
@@ -129,7 +130,7 @@ void prom_gallery_make_sconce(prom_gallery *g, prom_solid *s, uint32_t v, prom_r
                                  {0.16f * f, 0.03f, 0.14f}};
         prom_solid_use(s, brass(g));
         prom_solid_tube(s, arm, (const float[]){0.012f, 0.011f, 0.010f, 0.009f, 0.009f}, 5,
-                        prom_gallery_sides(g, 8));
+                        prom_gallery_sides(g, 32));
         build_candle(g, s, 0.16f * f, 0.05f, 0.14f);
     }
 }
@@ -143,11 +144,11 @@ void prom_gallery_make_lamp(prom_gallery *g, prom_solid *s, uint32_t v, prom_ran
     const float inside[][2] = {{0.155f, 1.70f}, {0.255f, 1.36f}};
     (void)r;
     prom_solid_use(s, brass(g));
-    prom_solid_lathe(s, foot, 5, prom_gallery_sides(g, 16), true);
+    prom_solid_lathe(s, foot, 5, prom_gallery_sides(g, 64), true);
     prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_FABRIC, shades[v % 3], 0.3f));
-    prom_solid_lathe(s, shade, 2, prom_gallery_sides(g, 24), true);
-    prom_solid_lathe(s, inside, 2, prom_gallery_sides(g, 24), true);
+    prom_solid_lathe(s, shade, 2, prom_gallery_sides(g, 96), true);
+    prom_solid_lathe(s, inside, 2, prom_gallery_sides(g, 96), true);
     prom_solid_use(s, light(g));
-    prom_gallery_ball(s, 0, 1.48f, 0, 0.05f, 0.07f, 0.05f, prom_gallery_sides(g, 12),
+    prom_gallery_ball(s, 0, 1.48f, 0, 0.05f, 0.07f, 0.05f, prom_gallery_sides(g, 48),
                       PROM_GALLERY_LIT);
 }

@@ -148,7 +148,7 @@ static void plant_garden(prom_gallery *g, uint32_t parent, const float house[4])
 {
     prom_random r = prom_random_stream(g->options.seed, 20, 0);
     float length = 2 * (house[2] - house[0] + house[3] - house[1]);
-    int trees = (int)(length / 7);
+    int trees = (int)(length / 4);
     for (int i = 0; i < trees; i++) {
         float out = prom_random_between(&r, 12, 40), t = prom_random_unit(&r);
         uint32_t side = prom_random_below(&r, 4);
@@ -196,7 +196,8 @@ static void hill_point(const void *context, float u, float v, float p[3])
 {
     const float *c = context;
     float a = -2 * PI * u, near = 0.5f + 0.45f * v;
-    float h = v * v * c[2] * (0.05f + 0.10f * (0.5f + prom_noise_rough(u, 0.5f, 6, 8)));
+    float h =
+        v * v * c[2] * (0.015f + 0.10f * fmaxf(0, 0.4f + prom_noise_rough(u, 0.5f, 7, 8)));
     p[0] = c[0] + c[2] * near * cosf(a);
     p[1] = -0.004f * c[2] + h;
     p[2] = c[1] - c[2] * near * sinf(a);
@@ -218,9 +219,9 @@ static void build_far(prom_gallery *g, prom_solid *s, const float house[4])
     prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_SKY, 0xffffff, 1));
     prom_gallery_surface(s, sky_point, c, 48, 16, 2, 1,
                          PROM_GALLERY_CLOSED_U | PROM_GALLERY_LIT);
-    prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_LEAVES, 0xd8e4e0, 1));
+    prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_PLASTER, 0x9db8a4, 1));
     prom_gallery_surface(s, hill_point, c, 96, 6, 40, 4, PROM_GALLERY_CLOSED_U);
-    prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_GRASS, 0xf0f4e0, 1));
+    prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_GRASS, 0xf4f8ee, 1));
     prom_gallery_surface(s, plain_point, c, 48, 6, 200, 60, PROM_GALLERY_CLOSED_U);
 }
 
@@ -271,10 +272,10 @@ void prom_gallery_make_tree(prom_gallery *g, prom_solid *s, uint32_t v, prom_ran
     static const uint32_t greens[] = {0xffffff, 0xe8f8d0, 0xd8e8d8, 0xf8f0c0};
     const float trunk[4][3] = {
         {0, 0, 0}, {0.05f, 0.8f, 0.02f}, {0, 1.8f, 0.05f}, {0.05f, 3.2f, 0}};
-    int steps = prom_gallery_steps(g, 20);
+    int steps = prom_gallery_steps(g, 80);
     prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_WOOD, 0x8a7058, 0.6f));
     prom_solid_tube(s, trunk, (const float[]){0.28f, 0.20f, 0.16f, 0.08f}, 4,
-                    prom_gallery_sides(g, 8));
+                    prom_gallery_sides(g, 32));
     prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_LEAVES, greens[v % 4], 1));
     bool slim = v % 3 == 2; // a cypress
     for (int i = 0; i < (slim ? 1 : 5); i++) {
@@ -297,7 +298,7 @@ void prom_gallery_make_hedge(prom_gallery *g, prom_solid *s, uint32_t v, prom_ra
     prom_solid_box(s, -2.5f, 0, -0.4f, 2.5f, 1.1f, 0.4f, PROM_FACE_ALL & ~PROM_FACE_BOTTOM);
     for (int k = -1; k <= 1; k += 2)
         prom_gallery_ball(s, 2.3f * (float)k, 1.3f, 0, 0.5f, 0.5f, 0.5f,
-                          prom_gallery_sides(g, 16), 0);
+                          prom_gallery_sides(g, 64), 0);
 }
 
 void prom_gallery_make_fountain(prom_gallery *g, prom_solid *s, uint32_t v, prom_random *r)
@@ -310,9 +311,9 @@ void prom_gallery_make_fountain(prom_gallery *g, prom_solid *s, uint32_t v, prom
     (void)v;
     (void)r;
     prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_MARBLE, 0xe8ddca, 1.0f));
-    prom_solid_lathe(s, basin, 6, prom_gallery_sides(g, 32), false);
-    prom_solid_lathe(s, stem, 11, prom_gallery_sides(g, 24), true);
+    prom_solid_lathe(s, basin, 6, prom_gallery_sides(g, 128), false);
+    prom_solid_lathe(s, stem, 11, prom_gallery_sides(g, 96), true);
     prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_CERAMIC, 0x8ab8c8, 1.0f));
     const float water[][2] = {{1.75f, 0.40f}, {0, 0.40f}};
-    prom_solid_lathe(s, water, 2, prom_gallery_sides(g, 32), false);
+    prom_solid_lathe(s, water, 2, prom_gallery_sides(g, 128), false);
 }

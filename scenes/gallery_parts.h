@@ -137,10 +137,10 @@ void prom_gallery_wall(prom_solid *s, float length, float y0, float y1,
 // The same lying, over x and z; a hole is (x0, z0, x1, z1). It faces up, or down.
 void prom_gallery_slab(prom_solid *s, float x0, float z0, float x1, float z1, float y,
                        const prom_gallery_hole *holes, int hole_count, bool up);
-// Sides of round things, a multiple of 4.
-int prom_gallery_sides(const prom_gallery *g, int at_detail_2);
-// The steps of a grid for a curved surface: 1, 2, 4, 8 times half of it.
-int prom_gallery_steps(const prom_gallery *g, int at_detail_2);
+// The steps of a curved surface that has `most` of them at the highest detail; at least 2.
+int prom_gallery_steps(const prom_gallery *g, int most);
+// The same around a thing: at least 6, from 8 on a multiple of 4.
+int prom_gallery_sides(const prom_gallery *g, int most);
 // Writes it under a parent as one node of its own, unless it is empty.
 void prom_gallery_add(prom_gallery *g, uint32_t parent, const char *name, prom_solid *s);
 

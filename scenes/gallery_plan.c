@@ -258,6 +258,16 @@ static void add_windows(prom_gallery_plan *plan, prom_gallery_opening window, ui
     }
 }
 
+// A tall one over the half landing of the stairs.
+static void add_landing_window(prom_gallery_plan *plan, prom_gallery_opening window)
+{
+    window.window = true;
+    window.width = 2.2f;
+    window.y0 = PROM_GALLERY_UPPER / 2 + 0.9f;
+    window.y1 = window.y0 + 4.2f;
+    prom_array_push(&plan->openings, window);
+}
+
 // Between two cells that meet, or a cell and the outside: what leads through, if anything.
 static void connect(prom_gallery_plan *plan, prom_gallery_opening o, uint32_t storey,
                     float span, bool axis, prom_random *r)
@@ -267,7 +277,10 @@ static void connect(prom_gallery_plan *plan, prom_gallery_opening o, uint32_t st
     const prom_gallery_room *other = inside == a ? b : a;
     if (!inside || inside->kind == PROM_GALLERY_COURT || o.rooms[0] == o.rooms[1]) return;
     if (!other || other->kind == PROM_GALLERY_COURT) {
-        if (inside->kind != PROM_GALLERY_STAIRS) add_windows(plan, o, storey, span);
+        if (inside->kind != PROM_GALLERY_STAIRS)
+            add_windows(plan, o, storey, span);
+        else if (!storey && !o.along_x)
+            add_landing_window(plan, o);
         return;
     }
     bool rotunda = a->kind == PROM_GALLERY_ROTUNDA || b->kind == PROM_GALLERY_ROTUNDA;

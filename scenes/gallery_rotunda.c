@@ -80,8 +80,9 @@ static void build_walls(prom_gallery *g, const prom_gallery_room *r, uint32_t id
                         prom_solid *s)
 {
     float gap = asinf(PASSAGE / d->radius);
-    int steps = prom_gallery_steps(g, 16), over = prom_gallery_steps(g, 4);
+    int steps = prom_gallery_steps(g, 64), over = prom_gallery_steps(g, 16);
     prom_paint stone = prom_gallery_paint(g, PROM_GALLERY_ASHLAR, 0xfff8ea, 2.4f);
+    prom_paint plaster = prom_gallery_paint(g, PROM_GALLERY_PLASTER, 0xf4dcb4, 2.0f);
     static const prom_gallery_side sides[4] = {PROM_GALLERY_EAST, PROM_GALLERY_NORTH,
                                                PROM_GALLERY_WEST, PROM_GALLERY_SOUTH};
     for (int k = 0; k < 4; k++) {
@@ -89,8 +90,10 @@ static void build_walls(prom_gallery *g, const prom_gallery_room *r, uint32_t id
               reach = k % 2 ? 0.5f * (r->z1 - r->z0) : 0.5f * (r->x1 - r->x0);
         prom_solid_use(s, stone);
         build_band(s, d, a + gap, a + PI / 2 - gap, 0, HEAD, steps);
+        prom_solid_use(s, plaster);
         build_band(s, d, a + gap, a + PI / 2 - gap, HEAD, d->top, steps);
         build_band(s, d, a - gap, a + gap, HEAD, d->top, over);
+        prom_solid_use(s, stone);
         prom_solid_frame old = prom_solid_enter(s, d->x, 0, d->z, a);
         build_passage(s, d->radius, reach);
         build_stop(g, s, reach, door_at(g, id, sides[k]));
@@ -102,7 +105,7 @@ static void build_walls(prom_gallery *g, const prom_gallery_room *r, uint32_t id
 static void build_ring(prom_gallery *g, prom_solid *s, const drum *d, const float (*profile)[2],
                        int points, float a0, float a1)
 {
-    int steps = prom_gallery_steps(g, a1 - a0 > 3 ? 64 : 16);
+    int steps = prom_gallery_steps(g, a1 - a0 > 3 ? 256 : 64);
     for (int j = 0; j + 1 < points; j++) {
         const float *lo = profile[j], *hi = profile[j + 1];
         for (int i = 0; i < steps; i++) {
@@ -130,9 +133,9 @@ static void build_pilasters(prom_gallery *g, prom_solid *s, const drum *d)
             round_point(d, d->radius - 0.02f, a, 0, p);
             prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_MARBLE, 0xd9b49a, 0.9f));
             prom_solid_frame old = prom_solid_enter(s, p[0], 0, p[2], a);
-            prom_solid_lathe(s, shaft, 10, prom_gallery_sides(g, 24), true);
+            prom_solid_lathe(s, shaft, 10, prom_gallery_sides(g, 96), true);
             prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_PLASTER, 0xfbf6ea, 2.0f));
-            prom_solid_box(s, -0.32f, y, -0.32f, 0.32f, y + 0.10f, 0.32f, PROM_FACE_ALL);
+            prom_solid_box(s, -0.26f, y, -0.26f, 0.26f, y + 0.10f, 0.26f, PROM_FACE_ALL);
             prom_solid_leave(s, old);
         }
 }
@@ -148,7 +151,7 @@ static void dome_point(const drum *d, float radius, float around, float up, floa
 static void build_cell(prom_gallery *g, prom_solid *s, const drum *d, const float box[4])
 {
     float b[4] = {box[0], box[1], box[2], box[3]}, radius = d->radius;
-    int levels = 1 + (int)g->options.detail;
+    int levels = 1 + (int)g->options.detail / 2;
     float wa = 0.14f * (b[2] - b[0]), wu = 0.14f * (b[3] - b[1]);
     for (int k = 0; k <= levels; k++) {
         float c[4] = {b[0] + wa, b[1] + wu, b[2] - wa, b[3] - wu}, o[4][3], in[4][3],
@@ -207,7 +210,7 @@ static void build_dome(prom_gallery *g, prom_solid *s, const drum *d)
     prom_solid_use(s, prom_gallery_glass(g));
     prom_solid_frame old = prom_solid_enter(s, d->x, y + 0.4f, d->z, 0);
     const float cap[][2] = {{eye, 0}, {0.8f * eye, 0.16f}, {0.4f * eye, 0.28f}, {0, 0.32f}};
-    prom_solid_lathe(s, cap, 4, prom_gallery_sides(g, 24), true);
+    prom_solid_lathe(s, cap, 4, prom_gallery_sides(g, 96), true);
     prom_solid_leave(s, old);
 }
 
@@ -224,7 +227,7 @@ static void build_outer(prom_gallery *g, prom_solid *s, const drum *d)
     }
     prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_METAL, 0x9fb8a8, 1.0f));
     prom_solid_frame old = prom_solid_enter(s, d->x, 0, d->z, 0);
-    prom_solid_lathe(s, (const float(*)[2])profile, n, prom_gallery_sides(g, 32), true);
+    prom_solid_lathe(s, (const float(*)[2])profile, n, prom_gallery_sides(g, 128), true);
     prom_solid_leave(s, old);
 }
 

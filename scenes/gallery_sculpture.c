@@ -192,9 +192,9 @@ void prom_gallery_make_statue(prom_gallery *g, prom_solid *s, uint32_t v, prom_r
     const float base[][2] = {
         {0.36f, 0}, {0.36f, 0.06f}, {0.33f, 0.09f}, {0.33f, 0.12f}, {0, 0.12f}};
     prom_solid_use(s, sculpture_paint(g, v));
-    prom_solid_lathe(s, base, 5, prom_gallery_sides(g, 32), false);
+    prom_solid_lathe(s, base, 5, prom_gallery_sides(g, 128), false);
     prom_solid_frame old = prom_solid_enter(s, 0, 0.11f, 0, 0);
-    build_figure(s, r, prom_random_between(r, 0.98f, 1.12f), prom_gallery_steps(g, 56));
+    build_figure(s, r, prom_random_between(r, 0.98f, 1.12f), prom_gallery_steps(g, 192));
     prom_solid_leave(s, old);
 }
 
@@ -202,9 +202,9 @@ void prom_gallery_make_model(prom_gallery *g, prom_solid *s, uint32_t v, prom_ra
 {
     const float base[][2] = {{0.055f, 0}, {0.055f, 0.015f}, {0, 0.015f}};
     prom_solid_use(s, sculpture_paint(g, v + 1));
-    prom_solid_lathe(s, base, 3, prom_gallery_sides(g, 16), false);
+    prom_solid_lathe(s, base, 3, prom_gallery_sides(g, 64), false);
     prom_solid_frame old = prom_solid_enter(s, 0, 0.013f, 0, 0);
-    build_figure(s, r, 0.155f, prom_gallery_steps(g, 24));
+    build_figure(s, r, 0.155f, prom_gallery_steps(g, 96));
     prom_solid_leave(s, old);
 }
 
@@ -236,13 +236,13 @@ void prom_gallery_make_bust(prom_gallery *g, prom_solid *s, uint32_t v, prom_ran
 {
     const float socle[][2] = {{0.12f, 0},      {0.12f, 0.03f},  {0.09f, 0.05f}, {0.06f, 0.08f},
                               {0.055f, 0.13f}, {0.075f, 0.16f}, {0, 0.17f}};
-    int steps = prom_gallery_steps(g, 48);
+    int steps = prom_gallery_steps(g, 144);
     chest b = {.folds = prom_random_between(r, 4, 9),
                .depth = prom_random_between(r, 0.004f, 0.010f),
                .seed = (uint32_t)prom_random_next(r)};
     head h = random_head(r);
     prom_solid_use(s, sculpture_paint(g, v));
-    prom_solid_lathe(s, socle, 7, prom_gallery_sides(g, 32), true);
+    prom_solid_lathe(s, socle, 7, prom_gallery_sides(g, 128), true);
     prom_gallery_surface(s, chest_point, &b, steps, steps, 1, 1, PROM_GALLERY_CLOSED_U);
     h.y = 0.58f;
     h.z = 0.025f;
@@ -332,7 +332,7 @@ static void build_pebbles(prom_gallery *g, prom_solid *s, prom_random *r)
         form f = {.a = {prom_random_between(r, -0.06f, 0.06f), size, y + 0.94f * size * flat,
                         0.25f, flat},
                   .seed = (uint32_t)prom_random_next(r)};
-        int steps = prom_gallery_steps(g, 40);
+        int steps = prom_gallery_steps(g, 160);
         prom_gallery_surface(s, pebble, &f, steps, steps / 2, 1, 1, PROM_GALLERY_CLOSED_U);
         y += 1.80f * size * flat;
     }
@@ -342,7 +342,7 @@ void prom_gallery_make_abstract(prom_gallery *g, prom_solid *s, uint32_t v, prom
 {
     static const uint32_t tints[] = {0xc9a24e, 0xb8c0c4, 0x3f5f8a,
                                      0xb5483a, 0xf4efe4, 0x4a4d50};
-    int steps = prom_gallery_steps(g, 72);
+    int steps = prom_gallery_steps(g, 224);
     form f = {.seed = (uint32_t)prom_random_next(r)};
     prom_solid_use(s, prom_gallery_paint(g, v % 2 ? PROM_GALLERY_METAL : PROM_GALLERY_MARBLE,
                                          tints[prom_random_below(r, 6)], 0.8f));
@@ -364,7 +364,7 @@ void prom_gallery_make_abstract(prom_gallery *g, prom_solid *s, uint32_t v, prom
         f.a[0] = 2;
         f.a[1] = 3 + 2 * (float)prom_random_below(r, 2);
         f.a[2] = prom_random_between(r, 0.045f, 0.07f);
-        prom_gallery_surface(s, knot, &f, prom_gallery_sides(g, 16), steps * 3, 1, 8,
+        prom_gallery_surface(s, knot, &f, prom_gallery_sides(g, 64), steps * 3, 1, 8,
                              PROM_GALLERY_CLOSED_U | PROM_GALLERY_CLOSED_V);
         break;
     case 2:

@@ -9,16 +9,18 @@
 // Towards the light of every scene (render/shaders/lighting.glsl).
 static const float to_light[3] = {0.4243f, 0.7576f, 0.4960f};
 
-int prom_gallery_steps(const prom_gallery *g, int at_detail_2)
+int prom_gallery_steps(const prom_gallery *g, int most)
 {
-    int n = (at_detail_2 << g->options.detail) / 4;
+    // A step of detail has about five times the triangles of the one before.
+    static const int percent[PROM_GALLERY_DETAIL_MAX] = {7, 20, 45, 100};
+    int n = most * percent[g->options.detail - 1] / 100;
     return n > 2 ? n : 2;
 }
 
-int prom_gallery_sides(const prom_gallery *g, int at_detail_2)
+int prom_gallery_sides(const prom_gallery *g, int most)
 {
-    int n = prom_gallery_steps(g, at_detail_2) / 4 * 4;
-    return n > 8 ? n : 8;
+    int n = prom_gallery_steps(g, most);
+    return n < 6 ? 6 : n < 8 ? n : n / 4 * 4;
 }
 
 // ---- surfaces

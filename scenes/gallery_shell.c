@@ -48,6 +48,10 @@ static look look_of(prom_gallery *g, const prom_gallery_room *room)
     case PROM_GALLERY_STAIRS:
         l.stone = true;
         l.wall = l.dado = l.frieze = prom_gallery_paint(g, PROM_GALLERY_ASHLAR, 0xfff8ea, 2.4f);
+        l.wall =
+            prom_gallery_paint(g, PROM_GALLERY_PLASTER,
+                               room->kind == PROM_GALLERY_HALL ? 0xf6e0b8 : 0xf2dcc0, 2.0f);
+        l.frieze = white;
         l.skirting = prom_gallery_paint(g, PROM_GALLERY_MARBLE, 0xa8a29a, 1.0f);
         l.frame = prom_gallery_paint(g, PROM_GALLERY_MARBLE, 0xe6dccb, 1.0f);
         l.leaf = oak;
@@ -153,13 +157,36 @@ static void build_dentils(const wall *w, float y, float size)
     }
 }
 
+// Raised fields on the dado, between doors and windows.
+static void build_fields(const wall *w, float y)
+{
+    float at = 0.1f;
+    prom_solid_use(w->trim, w->look->dado);
+    while (at < w->length - 0.5f) {
+        float end = w->length - 0.1f, next = w->length;
+        for (int i = 0; i < w->count; i++) {
+            const prom_gallery_hole *h = &w->holes[i];
+            if (w->window[i] || h->v0 > y + 1 || h->v1 < y || h->u1 < at) continue;
+            end = fminf(end, h->u0 - 0.2f);
+            next = fminf(next, h->u1 + 0.2f);
+        }
+        int n = (int)roundf((end - at) / 0.95f);
+        for (int i = 0; i < n; i++) {
+            float step = (end - at) / (float)n, u = at + step * (float)i;
+            prom_solid_box(w->trim, u + 0.07f, y + 0.26f, 0, u + step - 0.07f, y + DADO - 0.14f,
+                           0.014f, PROM_FACE_NO_BACK);
+        }
+        at = next;
+    }
+}
+
 // The cornice; its profile gets rounder with the detail.
 static void build_cornice(const wall *w, float top, float size)
 {
     float profile[40][2] = {{top - size, 0},
                             {top - 0.93f * size, 0.12f * size},
                             {top - 0.72f * size, 0.14f * size}};
-    int n = 3, steps = prom_gallery_steps(w->g, 4);
+    int n = 3, steps = prom_gallery_steps(w->g, 16);
     for (int i = 0; i <= steps; i++) { // a quarter hollow, then the lip
         float a = 1.5707963f * (float)i / (float)steps;
         profile[n][0] = top - (0.72f - 0.52f * sinf(a)) * size;
@@ -171,7 +198,7 @@ static void build_cornice(const wall *w, float top, float size)
     profile[n++][1] = 0.88f * size;
     prom_solid_use(w->trim, w->look->trim);
     prom_solid_moulding(w->trim, (const float(*)[2])profile, n, 0, w->length);
-    if (w->g->options.detail > 1) build_dentils(w, top - 0.72f * size, 0.18f * size);
+    if (w->g->options.detail > 2) build_dentils(w, top - 0.72f * size, 0.18f * size);
 }
 
 static void build_architrave(const wall *w, const prom_gallery_hole *h, bool window)
@@ -293,6 +320,8 @@ static void build_wall(wall *w, uint32_t room, prom_gallery_side side)
     const look *l = w->look;
     const prom_gallery_room *r = w->room;
     float bands[2] = {r->y0 + DADO, r->y1 - FRIEZE};
+    if (r->kind == PROM_GALLERY_HALL) bands[0] = PROM_GALLERY_UPPER - 0.1f;
+    if (r->kind == PROM_GALLERY_STAIRS) bands[0] = r->y0 + 1.2f;
     prom_paint paints[3] = {l->dado, l->wall, l->frieze};
     prom_solid_frame a = prom_solid_enter(w->walls, face.x, 0, face.z, face.yaw);
     prom_solid_frame b = prom_solid_enter(w->trim, face.x, 0, face.z, face.yaw);
@@ -303,6 +332,7 @@ static void build_wall(wall *w, uint32_t room, prom_gallery_side side)
     build_skirting(w, r->y0);
     if (!l->stone && r->kind != PROM_GALLERY_MODERN && r->kind != PROM_GALLERY_SCULPTURES) {
         build_rail(w, r->y0 + DADO);
+        build_fields(w, r->y0);
         prom_solid_use(w->trim, l->trim);
         build_rail(w, r->y1 - FRIEZE);
     }

@@ -6,6 +6,7 @@
 #define PI 3.14159265f
 #define THICKNESS 0.28f // of a flight, below its steps
 #define RAIL 0.95f      // height
+#define STRING 0.14f    // of what the balusters stand on
 
 // ---- balustrades
 
@@ -20,8 +21,23 @@ static void build_baluster(prom_gallery *g, prom_solid *s, float x, float y, flo
             {0.050f, 0},         {0.050f, 0.08f * h}, {0.030f, 0.12f * h},
             {0.058f, 0.30f * h}, {0.050f, 0.42f * h}, {0.024f, 0.68f * h},
             {0.042f, 0.84f * h}, {0.028f, 0.90f * h}, {0.050f, h}};
-        prom_solid_lathe(s, profile, 9, prom_gallery_sides(g, 8), true);
+        prom_solid_lathe(s, profile, 9, prom_gallery_sides(g, 32), true);
     }
+    prom_solid_leave(s, old);
+}
+
+// A beam along the foot, which hides the ends of steps.
+static void build_string(prom_solid *s, const float a[3], const float b[3])
+{
+    float dx = b[0] - a[0], dz = b[2] - a[2], length = hypotf(dx, dz), half = 0.09f;
+    prom_solid_frame old = prom_solid_enter(s, a[0], 0, a[2], atan2f(-dz, dx));
+    float low0 = a[1] - 0.12f, low1 = b[1] - 0.12f, top0 = a[1] + STRING, top1 = b[1] + STRING;
+    prom_solid_quad(s, (float[]){0, low0, half}, (float[]){length, low1, half},
+                    (float[]){length, top1, half}, (float[]){0, top0, half});
+    prom_solid_quad(s, (float[]){length, low1, -half}, (float[]){0, low0, -half},
+                    (float[]){0, top0, -half}, (float[]){length, top1, -half});
+    prom_solid_quad(s, (float[]){0, top0, half}, (float[]){length, top1, half},
+                    (float[]){length, top1, -half}, (float[]){0, top0, -half});
     prom_solid_leave(s, old);
 }
 
@@ -30,7 +46,7 @@ static void build_newel(prom_gallery *g, prom_solid *s, const float p[3])
     prom_solid_frame old = prom_solid_enter(s, p[0], p[1], p[2], 0);
     prom_solid_box(s, -0.11f, -0.3f, -0.11f, 0.11f, 1.05f, 0.11f, PROM_FACE_ALL);
     prom_solid_box(s, -0.14f, 1.05f, -0.14f, 0.14f, 1.10f, 0.14f, PROM_FACE_ALL);
-    prom_gallery_ball(s, 0, 1.22f, 0, 0.12f, 0.12f, 0.12f, prom_gallery_sides(g, 12), 0);
+    prom_gallery_ball(s, 0, 1.22f, 0, 0.12f, 0.12f, 0.12f, prom_gallery_sides(g, 48), 0);
     prom_solid_leave(s, old);
 }
 
@@ -41,15 +57,14 @@ void prom_gallery_balustrade(prom_gallery *g, prom_solid *s, const float a[3], c
     prom_solid_use(s, prom_gallery_paint(g, PROM_GALLERY_MARBLE, 0xefe6d6, 1.0f));
     for (int i = 0; i < n; i++) {
         float t = ((float)i + 0.5f) / (float)n, y = a[1] + (b[1] - a[1]) * t;
-        build_baluster(g, s, a[0] + (b[0] - a[0]) * t, y, a[2] + (b[2] - a[2]) * t, y + RAIL);
+        build_baluster(g, s, a[0] + (b[0] - a[0]) * t, y + STRING, a[2] + (b[2] - a[2]) * t,
+                       y + RAIL);
     }
     build_newel(g, s, a);
     build_newel(g, s, b);
-    for (int k = 0; k < 2; k++) { // foot and hand rail
-        float y = k ? RAIL : 0.04f, r = k ? 0.075f : 0.085f;
-        const float line[2][3] = {{a[0], a[1] + y, a[2]}, {b[0], b[1] + y, b[2]}};
-        prom_solid_tube(s, line, (const float[]){r, r}, 2, prom_gallery_sides(g, 8));
-    }
+    build_string(s, a, b);
+    const float line[2][3] = {{a[0], a[1] + RAIL, a[2]}, {b[0], b[1] + RAIL, b[2]}};
+    prom_solid_tube(s, line, (const float[]){0.075f, 0.075f}, 2, prom_gallery_sides(g, 32));
 }
 
 // ---- flights

@@ -181,10 +181,10 @@ static color ashlar(float x, float y)
 {
     int row = (int)(y * 4);
     float u = x * 2 + (row % 2 ? 0.5f : 0), edge = fminf(border(u) / 2, border(y * 4) / 4);
-    float tone = 0.93f + 0.08f * (prom_noise_cell(wrap((int)u, 2), row, 6) - 0.5f) +
+    float tone = 0.94f + 0.06f * (prom_noise_cell(wrap((int)u, 2), row, 6) - 0.5f) +
                  0.10f * prom_noise_rough(x, y, 12, 3);
     return prom_color_shade((color){tone, tone * 0.97f, tone * 0.90f},
-                            edge < 0.006f ? 0.78f : 1);
+                            edge < 0.004f ? 0.86f : 1);
 }
 
 static color wood(float x, float y)

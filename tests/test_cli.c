@@ -23,7 +23,7 @@ static void expect(const char *arguments, int code)
 }
 
 static const char *const commands[] = {"build",     "info",       "shot",       "walk", "bench",
-                                       "calibrate", "scene city", "scene tile", NULL};
+                                       "calibrate", "scene city", "scene gallery", "scene tile", NULL};
 
 static void help_goes_to_stdout(void **state)
 {
@@ -120,6 +120,11 @@ static const char *const wrong[][2] = {
     {"calibrate here", "here"},
     {"scene city", "--output"},
     {"scene city -o a.glb --size 0", "--size"},
+    {"scene gallery", "--output"},
+    {"scene gallery -o a.glb --rooms 16", "--rooms"},
+    {"scene gallery -o a.glb --rooms many", "many"},
+    {"scene gallery -o a.glb --detail 5", "--detail"},
+    {"scene gallery -o a.glb b.glb", "b.glb"},
     {"scene tile a.glb -o b.glb", "--grid"},
     {"scene tile a.glb -o b.glb --grid 5", "--grid"},
     {"scene tile a.glb -o b.glb --grid 5x-1", "--grid"},
@@ -194,6 +199,7 @@ static void unwritable_outputs_exit_4_and_are_named(void **state)
     expect_error("calibrate -o nowhere/p.json", 4, "nowhere/p.json");
     expect_error("scene city -o nowhere/a.glb", 4, "nowhere/a.glb");
     expect_error("scene city -o b.glb --path nowhere/a.path", 4, "nowhere/a.path");
+    expect_error("scene gallery -o nowhere/a.glb", 4, "nowhere/a.glb");
     expect_error("scene tile a.glb --grid 2x2 -o nowhere/b.glb", 4, "nowhere/b.glb");
     const char *const inputs[] = {"a.glb", "file", NULL};
     assert_int_equal(count_others(".", inputs), 0);
