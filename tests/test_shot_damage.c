@@ -46,6 +46,7 @@ static int make_model(void **state)
     if (!run.code) run_program(&run, "build c.glb -o c.prom --quiet");
     if (run.code) fprintf(stderr, "%s", run.err);
     assert_int_equal(run.code, 0);
+    unlink("c.prom.work"); // what the builder keeps for the next build
     struct stat st;
     assert_int_equal(stat("c.prom", &st), 0);
     whole_bytes = (size_t)st.st_size;
