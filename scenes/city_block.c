@@ -170,7 +170,7 @@ static void fill_side(prom_city_site *site, float x, float z, float yaw, float l
 {
     side e = {site, x, z, yaw};
     prom_random *random = site->random;
-    float step = 8.5f;
+    float step = 9.3f;
     uint32_t n = (uint32_t)((length - 12) / step);
     for (uint32_t i = 0; i <= n; i++) {
         float along = (length - step * (float)n) / 2 + step * (float)i;
@@ -187,7 +187,7 @@ static void fill_side(prom_city_site *site, float x, float z, float yaw, float l
     if (lamp == PROM_CITY_MAST) put(&e, PROM_CITY_SIGN, length - 5.6f, -0.45f, PI / 2, 1);
     float c = cosf(yaw), s = sinf(yaw), offset = 1.1f;
     for (uint32_t i = 0; i < prom_city_bays(length); i++) {
-        if (prom_random_unit(random) > 0.32f) continue;
+        if (prom_random_unit(random) > 0.28f) continue;
         float bay = prom_city_bay(length, i), along = length / 2 + bay;
         if (gate && fabsf(bay) < PROM_CITY_PASSAGE + PROM_CITY_BAY / 2) continue;
         prom_city_park_car(site->city, site->node, x + c * along + s * offset,

@@ -35,9 +35,9 @@ static const species park[] = {
     {"larch", CONE, 13, 0.20f, {0.19f, 0, 0.16f}, PROM_CITY_NEEDLES, BARK, {0xffffa8, 0xf4ffb0}, 0, 300, 0, 0},
 };
 static const species street[] = {
-    {"linden", BROAD, 7.5f, 0.15f, {0.67f, 0.23f, 0.30f}, LEAF, BARK, {0xe8f4b4, 0xd8ecb0}, 0.82f, 260, 8, 5},
-    {"maple", BROAD, 6.8f, 0.13f, {0.68f, 0.26f, 0.27f}, FINE, BARK, {0xf4f09a, 0xffffac}, 0.80f, 260, 8, 6},
-    {"hornbeam", BROAD, 8, 0.14f, {0.62f, 0.16f, 0.34f}, LEAF, BARK, {0xc0d4a0, 0xccdcb0}, 0.80f, 260, 7, 0},
+    {"linden", BROAD, 7.5f, 0.15f, {0.67f, 0.23f, 0.30f}, LEAF, BARK, {0xe8f4b4, 0xd8ecb0}, 0.84f, 240, 8, 5},
+    {"maple", BROAD, 6.8f, 0.13f, {0.68f, 0.26f, 0.27f}, FINE, BARK, {0xf4f09a, 0xffffac}, 0.82f, 240, 8, 6},
+    {"hornbeam", BROAD, 8, 0.14f, {0.62f, 0.16f, 0.34f}, LEAF, BARK, {0xc0d4a0, 0xccdcb0}, 0.82f, 240, 7, 0},
 };
 static const species quay[] = {
     {"plane", BROAD, 10.5f, 0.30f, {0.66f, 0.38f, 0.27f}, LEAF, PROM_CITY_PLANE_BARK, {0xf0f4b0, 0xe4ecb0}, 1.10f, 350, 11, 8},
