@@ -74,10 +74,15 @@ static bool start_server(void)
         _exit(127);
     }
     close(ends[1]);
-    ssize_t got = read(ends[0], number, sizeof number - 1); // once it is ready, or has ended
+    // A line once the server is ready, perhaps in pieces; the pipe's end if it has died.
+    size_t length = 0;
+    while (length < sizeof number - 1 && !memchr(number, '\n', length)) {
+        ssize_t got = read(ends[0], number + length, sizeof number - 1 - length);
+        if (got <= 0) break;
+        length += (size_t)got;
+    }
     close(ends[0]);
-    if (got < 2) return false;
-    number[got] = 0;
+    if (!memchr(number, '\n', length)) return false;
     snprintf(x_display, sizeof x_display, ":%d", atoi(number));
     return setenv("DISPLAY", x_display, 1) == 0;
 }
