@@ -218,7 +218,7 @@ static void build_town_hall(prom_city *city, prom_solid *shape)
         .wall = f.wall,
         .trim = f.trim,
         .brick = prom_city_paint(city, PROM_CITY_BRICK, 0xb26e5e, 1.3f),
-        .dormers = 4,
+        .dormers = 3, // the middle one is in the tower
         .chimneys = 2,
         .window = f,
         .detail = f.detail,
