@@ -9,7 +9,6 @@
 #include "traverse/cost.h"
 
 #include <inttypes.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -332,8 +331,6 @@ prom_status prom_command_build(int argc, char **argv, prom_error *error)
     prom_status status = check_files(&o, error);
     if (status) return status;
     if (o.jobs) use_jobs(o.jobs);
-    // A full disk or quota is to be an error with a message, not the end of the process.
-    signal(SIGXFSZ, SIG_IGN);
     double start = prom_clock_ms();
     prom_build_report report = {0};
     status = prom_build(o.scene, o.output, &o.build, &report, error);

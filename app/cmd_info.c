@@ -209,10 +209,20 @@ static double mib(uint64_t bytes)
     return (double)bytes / (1 << 20);
 }
 
+// Texts of the file without what could steer a terminal; free it.
+static char *plain(const char *text)
+{
+    char *copy = prom_strdup(text ? text : "");
+    prom_text_make_plain(copy);
+    return copy;
+}
+
 static void print_meta(const facts *f, const char *label, const char *key)
 {
     const char *text = prom_container_meta(f->container, key);
-    if (text) printf("%-16s %s\n", label, text);
+    char *value = plain(text);
+    if (text) printf("%-16s %s\n", label, value);
+    prom_free(value);
 }
 
 static void print_found(const facts *f)
@@ -271,7 +281,9 @@ static void print_stages(const json_t *stages)
     {
         double ms = json_number_value(json_object_get(stage, "ms"));
         all += ms;
-        printf("%-16s %10.2f\n", json_string_value(json_object_get(stage, "name")), ms / 1000);
+        char *name = plain(json_string_value(json_object_get(stage, "name")));
+        printf("%-16s %10.2f\n", name, ms / 1000);
+        prom_free(name);
     }
     printf("%-16s %10.2f\n", "all", all / 1000);
 }

@@ -4,6 +4,7 @@
 #include "metaobj/base/log.h"
 
 #include <argp.h>
+#include <signal.h>
 #include <stdio.h>
 
 const char *argp_program_version = "promenade " PROM_VERSION;
@@ -21,6 +22,8 @@ static const prom_command commands[] = {
 int main(int argc, char **argv)
 {
     argp_err_exit_status = PROM_ERR_USAGE;
+    // A file that grows past a limit is an error with a message, not the end of the process.
+    signal(SIGXFSZ, SIG_IGN);
     prom_error error = {0};
     prom_status status = prom_command_dispatch(
         "promenade", commands, sizeof commands / sizeof *commands, argc, argv, &error);

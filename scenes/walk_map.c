@@ -20,7 +20,12 @@ typedef struct raster {
     prom_walk_map *map;
     PROM_ARRAY(span) spans;
     float *low, *high; // of the present triangle in each column
+    uint64_t columns;  // looked at so far
 } raster;
+
+// Columns to look at in all: some seconds. A scene of a million triangles needs a hundredth of
+// it; only a damaged one, whose triangles all cover the whole map, is cut short.
+#define COLUMNS_MAX 400000000u
 
 // ---- triangles into columns
 
@@ -79,6 +84,8 @@ static void add_triangle(raster *r, const double v[3][3])
     if (high[0] < 0 || high[2] < 0 || low[0] >= m->columns || low[2] >= m->rows) return;
     const int box[4] = {clamp_cell(low[0], m->columns), clamp_cell(high[0], m->columns),
                         clamp_cell(low[2], m->rows), clamp_cell(high[2], m->rows)};
+    r->columns += (uint64_t)(box[1] - box[0] + 1) * (uint64_t)(box[3] - box[2] + 1);
+    if (r->columns > COLUMNS_MAX) return;
     for (int k = 0; k < 3; k++) {
         int x = (k + 1) % 3, y = (k + 2) % 3;
         n[k] = (v[1][x] - v[0][x]) * (v[2][y] - v[0][y]) -

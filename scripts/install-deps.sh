@@ -1,6 +1,6 @@
 #!/bin/sh
 # Installs the Debian packages that a step needs and that are missing, and says so.
-#   scripts/install-deps.sh [build] [test] [demo] [bench] [format]
+#   scripts/install-deps.sh [build] [test] [demo] [bench] [format] [fuzz]
 # Without root or sudo it says what to install and fails. docs/DEPENDENCIES.md says why each
 # package is there.
 set -eu
@@ -12,6 +12,7 @@ test="xvfb xdotool"
 demo="jq"
 bench="jq imagemagick"
 format="clang-format clang-tidy"
+fuzz="clang libclang-rt-dev"
 
 wanted=""
 for group in "${@:-build}"; do
@@ -21,6 +22,7 @@ for group in "${@:-build}"; do
     demo) wanted="$wanted $demo" ;;
     bench) wanted="$wanted $bench" ;;
     format) wanted="$wanted $format" ;;
+    fuzz) wanted="$wanted $fuzz" ;;
     *) echo "install-deps: there is no group \`$group\`" >&2; exit 1 ;;
     esac
 done

@@ -1,6 +1,7 @@
 #include "metaobj/base/log.h"
 
 #include "metaobj/base/clock.h"
+#include "metaobj/base/status.h"
 
 #include <pthread.h>
 #include <stdarg.h>
@@ -31,13 +32,14 @@ void prom_log(prom_log_level level, const char *format, ...)
     static const char *const prefix[] = {"error: ", "warning: ", "", "debug: "};
     if (level > state.level) return;
     pthread_mutex_lock(&state.lock);
-    clear_line();
-    fputs(prefix[level], stderr);
+    char text[2048];
     va_list args;
     va_start(args, format);
-    vfprintf(stderr, format, args);
+    vsnprintf(text, sizeof text, format, args);
     va_end(args);
-    fputc('\n', stderr);
+    prom_text_make_plain(text);
+    clear_line();
+    fprintf(stderr, "%s%s\n", prefix[level], text);
     pthread_mutex_unlock(&state.lock);
 }
 

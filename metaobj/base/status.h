@@ -23,4 +23,8 @@ typedef struct prom_error {
 prom_status prom_fail(prom_error *error, prom_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+// Names and texts come from foreign files: control characters, which could steer a terminal,
+// become `?`, the ends of lines blanks.
+void prom_text_make_plain(char *text);
+
 #endif
