@@ -107,9 +107,10 @@ static prom_gallery_painting make_painting(prom_gallery *g, uint32_t number)
     char *name = prom_format("painting_%03u", number);
     prom_solid s;
     prom_solid_init(&s);
-    prom_solid_use(&s,
-                   prom_gallery_canvas(g, number, p.width / p.height,
-                                       p.width > 1.4f && g->options.detail > 2 ? 512 : 256));
+    uint32_t pixels = g->options.detail == 1                    ? 128
+                      : g->options.detail > 2 && p.width > 1.4f ? 512
+                                                                : 256;
+    prom_solid_use(&s, prom_gallery_canvas(g, number, p.width / p.height, pixels));
     float x = p.width / 2 + 0.002f, y = p.height / 2 + 0.002f, z = 0.02f;
     prom_solid_picture(&s, (float[]){-x, -y, z}, (float[]){x, -y, z}, (float[]){x, y, z},
                        (float[]){-x, y, z});

@@ -1,7 +1,5 @@
 #include "scenes/gallery_noise.h"
 
-#include "scenes/random.h"
-
 #include <math.h>
 
 prom_gallery_color prom_color_grey(float tone)
@@ -28,10 +26,12 @@ prom_gallery_color prom_color_mix(prom_gallery_color a, prom_gallery_color b, fl
 
 static float cell(int x, int y, int z, uint32_t seed)
 {
-    uint64_t h = prom_random_mix(((uint64_t)(uint32_t)x << 32 | (uint32_t)y) +
-                                 seed * 0x9e3779b97f4a7c15u);
-    if (z) h = prom_random_mix(h + (uint64_t)(uint32_t)z * 0xd1b54a32d192ed03u);
-    return (float)(h >> 40) * 0x1p-24f;
+    // 32 bits suffice for pictures and are quick.
+    uint32_t h = (uint32_t)x * 0x9e3779b1u ^ (uint32_t)y * 0x85ebca77u ^
+                 (uint32_t)z * 0xc2b2ae3du ^ seed * 0x27d4eb2fu;
+    h = (h ^ h >> 16) * 0x7feb352du;
+    h = (h ^ h >> 15) * 0x846ca68bu;
+    return (float)(h >> 8 ^ h >> 24) * 0x1p-24f;
 }
 
 float prom_noise_cell(int x, int y, uint32_t seed)
@@ -51,7 +51,8 @@ static float between(float a, float b, float t)
 
 static int wrap(int i, int period)
 {
-    return (i % period + period) % period;
+    i %= period;
+    return i < 0 ? i + period : i;
 }
 
 float prom_noise_tile(float x, float y, int cells, uint32_t seed)
@@ -60,8 +61,8 @@ float prom_noise_tile(float x, float y, int cells, uint32_t seed)
     y *= (float)cells;
     int ix = (int)floorf(x), iy = (int)floorf(y);
     float fx = ease(x - (float)ix), fy = ease(y - (float)iy);
-    int x0 = wrap(ix, cells), x1 = wrap(ix + 1, cells);
-    int y0 = wrap(iy, cells), y1 = wrap(iy + 1, cells);
+    int x0 = wrap(ix, cells), x1 = x0 + 1 < cells ? x0 + 1 : 0;
+    int y0 = wrap(iy, cells), y1 = y0 + 1 < cells ? y0 + 1 : 0;
     return between(between(cell(x0, y0, 0, seed), cell(x1, y0, 0, seed), fx),
                    between(cell(x0, y1, 0, seed), cell(x1, y1, 0, seed), fx), fy);
 }

@@ -20,8 +20,9 @@ static uint32_t image_of(prom_gallery *g, prom_gallery_texture texture)
     uint32_t size = prom_gallery_texture_size(texture);
     if (!size) return PROM_GLB_NONE;
     if (g->images[texture] != PROM_GLB_NONE) return g->images[texture];
+    if (g->options.detail == 1) size /= 2;
     uint8_t *rgb = prom_alloc((size_t)size * size, 3);
-    prom_gallery_texture_draw(texture, rgb);
+    prom_gallery_texture_draw(texture, size, rgb);
     g->images[texture] = add_image(g, prom_gallery_texture_name(texture), size, rgb);
     prom_free(rgb);
     return g->images[texture];

@@ -379,9 +379,8 @@ static uint8_t encode(float v)
     return (uint8_t)(255 * fminf(fmaxf(v, 0), 1) + 0.5f);
 }
 
-void prom_gallery_texture_draw(prom_gallery_texture texture, uint8_t *rgb)
+void prom_gallery_texture_draw(prom_gallery_texture texture, uint32_t size, uint8_t *rgb)
 {
-    uint32_t size = textures[texture].size;
     for (uint32_t y = 0; y < size; y++) {
         for (uint32_t x = 0; x < size; x++) {
             color c = textures[texture].draw(((float)x + 0.5f) / (float)size,

@@ -38,10 +38,10 @@ typedef enum prom_gallery_texture {
 } prom_gallery_texture;
 
 const char *prom_gallery_texture_name(prom_gallery_texture texture);
-// Width and height in pixels; 0 for PROM_GALLERY_PLAIN.
+// Width and height in pixels that show all of it; 0 for PROM_GALLERY_PLAIN.
 uint32_t prom_gallery_texture_size(prom_gallery_texture texture);
 // Fills size x size x 3 bytes, sRGB, first row on top.
-void prom_gallery_texture_draw(prom_gallery_texture texture, uint8_t *rgb);
+void prom_gallery_texture_draw(prom_gallery_texture texture, uint32_t size, uint8_t *rgb);
 
 // A painting, different for each number: a landscape, a portrait, an abstract composition or a
 // still life, for a frame of about width / height = aspect. size x size x 3 bytes.
