@@ -5,10 +5,13 @@
 
 #include "builder/pipeline.h"
 #include "metaobj/base/clock.h"
+#include "metaobj/base/log.h"
+#include "metaobj/base/stop.h"
 #include "metaobj/base/threads.h"
 #include "traverse/cost.h"
 
 #include <inttypes.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -322,6 +325,35 @@ static void use_jobs(unsigned jobs)
     setenv("LP_NUM_THREADS", text, 0);
 }
 
+static volatile sig_atomic_t stop_signal;
+
+static void stop(int signal_number)
+{
+    stop_signal = signal_number;
+    prom_stop_request();
+}
+
+// The first such signal ends the build cleanly, a second one the process.
+static void stop_on_signals(void)
+{
+    static const int signals[] = {SIGINT, SIGTERM, SIGHUP};
+    for (size_t i = 0; i < sizeof signals / sizeof *signals; i++) {
+        struct sigaction action = {.sa_handler = stop, .sa_flags = SA_RESTART | SA_RESETHAND};
+        struct sigaction before;
+        if (!sigaction(signals[i], NULL, &before) && before.sa_handler != SIG_IGN) // nohup
+            sigaction(signals[i], &action, NULL);
+    }
+}
+
+// Ends by the signal itself, as those who wait for the process expect: a shell ends its loop.
+static prom_status end_stopped(const prom_error *error)
+{
+    prom_log(PROM_LOG_ERROR, "%s", error->text);
+    signal(stop_signal, SIG_DFL);
+    raise(stop_signal);
+    return error->status;
+}
+
 prom_status prom_command_build(int argc, char **argv, prom_error *error)
 {
     build_options o = {0};
@@ -331,9 +363,11 @@ prom_status prom_command_build(int argc, char **argv, prom_error *error)
     prom_status status = check_files(&o, error);
     if (status) return status;
     if (o.jobs) use_jobs(o.jobs);
+    stop_on_signals();
     double start = prom_clock_ms();
     prom_build_report report = {0};
     status = prom_build(o.scene, o.output, &o.build, &report, error);
+    if (status == PROM_ERR_STOPPED) return end_stopped(error);
     if (status) return status;
     print_report(&o, &report, (prom_clock_ms() - start) / 1000.0);
     return PROM_OK;

@@ -30,11 +30,14 @@ enum {
     KEY_SPACING,
     KEY_ROOMS,
     KEY_ROOFLESS,
+    KEY_FLIGHT,
 };
 
 static const struct argp_option city_table[] = {
     {"output", 'o', "FILE", 0, "The scene to write (X.glb)", 0},
-    {"path", KEY_PATH, "FILE", 0, "Also write a walk of 600 frames along its streets", 0},
+    {"path", KEY_PATH, "FILE", 0,
+     "Also write a walk of 600 frames: a street, the bridge, the quay, the square", 0},
+    {"flight", KEY_FLIGHT, "FILE", 0, "Also write a flight of 600 frames above the roofs", 0},
     {"seed", KEY_SEED, "N", 0, "Another number gives another city (1)", 0},
     {"size", KEY_SIZE, "N", 0, "Blocks along each side (4)", 0},
     {"detail", KEY_DETAIL, "1..4", 0, "From plain to rich (2)", 0},
@@ -51,6 +54,9 @@ static error_t parse_city(int key, char *text, struct argp_state *state)
         break;
     case KEY_PATH:
         o->path = text;
+        break;
+    case KEY_FLIGHT:
+        o->city.flight_file = text;
         break;
     case KEY_SEED:
         o->city.seed = prom_option_whole(state, "--seed", text, 0, UINT64_MAX);
@@ -79,7 +85,7 @@ static error_t parse_city(int key, char *text, struct argp_state *state)
 static const struct argp city_argp = {
     .options = city_table,
     .parser = parse_city,
-    .doc = "Generate a city: houses, trees, lamps and streets.\v"
+    .doc = "Generate a city on a river: houses, bridges, streets, trees, hills around.\v"
            "The same seed, size and detail give the same city.",
     .children = children,
 };
@@ -88,13 +94,14 @@ static prom_status run_city(int argc, char **argv, prom_error *error)
 {
     city_options o = {.city = {.seed = 1}};
     argp_parse(&city_argp, argc, argv, 0, NULL, &o);
-    prom_command_files files = {.outputs = {&o.output, &o.path}};
+    prom_command_files files = {.outputs = {&o.output, &o.path, &o.city.flight_file}};
     prom_status status = prom_outputs_check(&files, error);
     uint64_t triangles = 0;
     if (!status) status = prom_city_write(o.output, o.path, &o.city, &triangles, error);
     if (status) return status;
     printf("%s: %" PRIu64 " triangles\n", o.output, triangles);
     if (o.path) printf("%s: a walk through it\n", o.path);
+    if (o.city.flight_file) printf("%s: a flight above it\n", o.city.flight_file);
     return PROM_OK;
 }
 

@@ -10,6 +10,8 @@
 #include "metaobj/base/threads.h"
 #include "metaobj/container.h"
 
+#include <pthread.h>
+
 #define PROM_LEVELS_MAX 12
 #define PROM_OWN_LEVELS_MAX 8        // of them from simplification; the rest is the artist's
 #define PROM_LEVEL_MIN_TRIANGLES 12u // a box has as many
@@ -44,7 +46,7 @@ typedef struct prom_cluster_build {
     float errors[PROM_CLUSTER_LEVELS];
     uint32_t level_count;
     uint64_t hash; // of the levels' meshes
-    uint64_t merge_key, cluster_key;
+    uint64_t merge_key;
 } prom_cluster_build;
 
 typedef struct prom_build_state {
@@ -80,6 +82,8 @@ typedef struct prom_build_state {
     prom_baker *baker;
     prom_measure *measure;
     prom_pool *pool;
+    pthread_mutex_t lock;
+    prom_error failure; // of a unit on some thread, the first; under the lock
 } prom_build_state;
 
 // ---- stages, in this order (each in the file of its name)
@@ -105,6 +109,14 @@ prom_status prom_build_write_texture(prom_build_state *b, const prom_texture *te
 // A prom_fail for a device without memory; `what` as in "meshes".
 prom_status prom_build_device_full(const char *what, prom_error *error);
 
+// Keeps a unit of work; may be called from several threads. That it cannot be kept ends the
+// build: see prom_build_goes_on.
+void prom_build_keep(prom_build_state *b, prom_unit_kind kind, uint64_t key,
+                     const prom_pack *pack);
+// To be asked before each unit: PROM_OK unless a unit of another thread has failed or all is to
+// stop. error: NULL is allowed.
+prom_status prom_build_goes_on(prom_build_state *b, prom_error *error);
+
 // Ends a stage's progress and counts its units.
 void prom_build_end_progress(prom_build_state *b, prom_progress *progress);
 
@@ -116,9 +128,14 @@ void prom_keys_of_device(prom_build_state *b);
 void prom_keys_of_materials(prom_build_state *b);
 uint64_t prom_key_of_levels(const prom_build_state *b, uint32_t shape);
 uint64_t prom_key_of_leaf(const prom_build_state *b, uint32_t shape);
-// Of a cluster whose children's keys are set.
+// Of a cluster, but for what it is made of: that is added, part by part, with
+// prom_key_add_placed.
 uint64_t prom_key_of_merge(const prom_build_state *b, uint32_t cluster);
+// Its bounds and its merge_key are set.
 uint64_t prom_key_of_cluster(const prom_build_state *b, uint32_t cluster);
+// Adds the unit `part` and where it stands.
+void prom_key_add_placed(uint64_t *key, uint64_t part, const double origin[3],
+                         const float basis[9]);
 
 // ---- memory
 

@@ -1,6 +1,7 @@
 #include "builder/import_parts.h"
 #include "metaobj/base/clock.h"
 #include "metaobj/base/log.h"
+#include "metaobj/base/stop.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -119,7 +120,8 @@ static void channel_finish(channel *c)
     if (c->doing != MAP_FAILED) munmap(c->doing, PROM_IMPORT_DOING);
 }
 
-// Waits for the child, at most limit_s seconds; then ends it. False: it was ended.
+// Waits for the child, at most limit_s seconds or until all is to stop; then ends it. False: it
+// was ended.
 static bool wait_for(pid_t pid, double limit_s, int *state)
 {
     double start = prom_clock_ms();
@@ -127,7 +129,7 @@ static bool wait_for(pid_t pid, double limit_s, int *state)
     for (;;) {
         pid_t got = waitpid(pid, state, WNOHANG);
         if (got == pid || (got < 0 && errno != EINTR)) return true;
-        if (prom_clock_ms() - start > limit_s * 1000.0) break;
+        if (prom_stop_requested() || prom_clock_ms() - start > limit_s * 1000.0) break;
         nanosleep(&(struct timespec){0, pause_ns}, NULL);
         if (pause_ns < 20000000) pause_ns *= 2;
     }

@@ -45,7 +45,7 @@ uint32_t prom_unpack_u32(prom_unpack *unpack, uint32_t most)
     return unpack->failed ? 0 : value;
 }
 
-void prom_unpack_mesh(prom_unpack *unpack, prom_mesh *mesh)
+void prom_unpack_mesh(prom_unpack *unpack, uint32_t material_count, prom_mesh *mesh)
 {
     uint32_t counts[3];
     *mesh = (prom_mesh){0};
@@ -59,7 +59,7 @@ void prom_unpack_mesh(prom_unpack *unpack, prom_mesh *mesh)
     prom_unpack_bytes(unpack, mesh->vertices, counts[0] * sizeof *mesh->vertices);
     prom_unpack_bytes(unpack, mesh->indices, counts[1] * sizeof *mesh->indices);
     prom_unpack_bytes(unpack, mesh->submeshes, counts[2] * sizeof *mesh->submeshes);
-    if (prom_mesh_check(mesh, PROM_NONE)) unpack->failed = true;
+    if (prom_mesh_check(mesh, material_count)) unpack->failed = true;
 }
 
 void prom_unpack_texture(prom_unpack *unpack, prom_texture *texture)

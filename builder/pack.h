@@ -26,8 +26,8 @@ typedef struct prom_unpack {
 
 void prom_unpack_bytes(prom_unpack *unpack, void *data, size_t bytes);
 uint32_t prom_unpack_u32(prom_unpack *unpack, uint32_t most); // fails above `most`
-// The caller frees the result, failed or not.
-void prom_unpack_mesh(prom_unpack *unpack, prom_mesh *mesh);
+// Fails for materials from material_count on. The caller frees the result, failed or not.
+void prom_unpack_mesh(prom_unpack *unpack, uint32_t material_count, prom_mesh *mesh);
 void prom_unpack_texture(prom_unpack *unpack, prom_texture *texture);
 // All was taken, and nothing failed.
 bool prom_unpack_end(const prom_unpack *unpack);

@@ -4,6 +4,7 @@
 #include "metaobj/base/clock.h"
 #include "metaobj/base/hash.h"
 #include "metaobj/base/log.h"
+#include "metaobj/base/stop.h"
 #include "traverse/cost.h"
 
 #include <stdio.h>
@@ -21,6 +22,26 @@ uint64_t prom_build_spare_memory(const prom_build_state *b, uint64_t least)
     uint64_t limit = (uint64_t)b->options->memory_mb << 20;
     uint64_t used = resident * (uint64_t)sysconf(_SC_PAGESIZE);
     return used + least < limit ? limit - used : least;
+}
+
+void prom_build_keep(prom_build_state *b, prom_unit_kind kind, uint64_t key,
+                     const prom_pack *pack)
+{
+    prom_error error = {0};
+    if (!prom_store_put(b->store, kind, key, pack, &error)) return;
+    pthread_mutex_lock(&b->lock);
+    if (!b->failure.status) b->failure = error;
+    pthread_mutex_unlock(&b->lock);
+}
+
+prom_status prom_build_goes_on(prom_build_state *b, prom_error *error)
+{
+    pthread_mutex_lock(&b->lock);
+    prom_status status = b->failure.status;
+    if (status && error) *error = b->failure;
+    pthread_mutex_unlock(&b->lock);
+    if (!status && prom_stop_requested()) status = PROM_ERR_STOPPED; // see stopped()
+    return status;
 }
 
 void prom_build_end_progress(prom_build_state *b, prom_progress *progress)
@@ -41,7 +62,6 @@ static prom_status stage_objects(prom_build_state *b, prom_error *error)
         prom_objects_find(&b->source, &b->options->objects, &b->objects, error);
     for (size_t i = 0; i < b->source.meshes.count; i++) { // the objects hold it all now
         prom_mesh_finish(&b->source.meshes.data[i]);
-        b->source.meshes.data[i] = (prom_mesh){0};
     }
     return status;
 }
@@ -183,10 +203,11 @@ static prom_status record_settings(prom_build_state *b, const char *scene, prom_
     snprintf(
         text, sizeof text,
         "max-triangles %u, min-triangles %u, chunk-size %g, octree %s, divisions %u,%u,%u, "
-        "group-radius %g, max-texture-px %u, up-axis %s, unit-m %g, texture-mb %u",
+        "group-radius %g, max-children %u, max-texture-px %u, up-axis %s, unit-m %g, "
+        "texture-mb %u",
         o->objects.max_triangles, o->objects.min_triangles, o->objects.chunk_size,
         o->tree.octree == PROM_OCTREE_STRICT ? "strict" : "loose", o->tree.divisions[0],
-        o->tree.divisions[1], o->tree.divisions[2], o->tree.group_radius,
+        o->tree.divisions[1], o->tree.divisions[2], o->tree.group_radius, o->tree.max_children,
         o->import.max_texture_px, up_names[o->import.up], o->import.unit_m, o->texture_mb);
     const char *slash = strrchr(scene, '/');
     prom_status status =
@@ -227,7 +248,8 @@ static prom_status run_stages(prom_build_state *b, const char *scene, prom_error
     b->scene_path = scene;
     for (size_t i = 0; i < sizeof stages / sizeof *stages; i++) {
         double start = prom_clock_ms();
-        prom_status status = stages[i].run(b, error);
+        prom_status status = prom_build_goes_on(b, error);
+        if (!status) status = stages[i].run(b, error);
         if (status) return status;
         if (stages[i].hash) hash = stages[i].hash(b, hash);
         double ms = prom_clock_ms() - start;
@@ -290,6 +312,7 @@ static prom_build_options resolved(const prom_build_options *options)
 
 static void finish_state(prom_build_state *b)
 {
+    pthread_mutex_destroy(&b->lock);
     prom_pool_destroy(b->pool);
     prom_measure_destroy(b->measure);
     prom_baker_destroy(b->baker);
@@ -333,22 +356,41 @@ static void warn_of_memory(const prom_build_options *o, const prom_build_report 
                  (unsigned long long)(report->peak_bytes >> 20), o->memory_mb);
 }
 
+// Whatever a stage said: a loader that was stopped too may have been taken for a crash.
+static prom_status stopped(const prom_build_state *b, prom_error *error)
+{
+    if (!b->store) return prom_fail(error, PROM_ERR_STOPPED, "stopped; nothing was done yet");
+    return prom_fail(error, PROM_ERR_STOPPED,
+                     "stopped; what was done is kept in %s.work, and the next build goes on "
+                     "from there",
+                     b->out_path);
+}
+
+// After the model: until that is in place, its units are still needed.
+static void drop_work(const char *out_path)
+{
+    prom_error error = {0};
+    if (prom_store_delete(out_path, &error)) prom_log(PROM_LOG_WARNING, "%s", error.text);
+}
+
 prom_status prom_build(const char *scene_path, const char *out_path,
                        const prom_build_options *options, prom_build_report *report,
                        prom_error *error)
 {
     const prom_build_options all = resolved(options);
-    prom_build_state b = {.options = &all, .out_path = out_path};
+    prom_build_state b = {
+        .options = &all, .out_path = out_path, .lock = PTHREAD_MUTEX_INITIALIZER};
     prom_error local;
     if (!error) error = &local;
     prom_status status = PROM_OK;
     b.writer = prom_writer_create(out_path, error); // and with it the lock
     if (!b.writer) status = error->status;
     if (!status) status = run_stages(&b, scene_path, error);
+    if (status && prom_stop_requested()) status = stopped(&b, error);
     if (!status) status = prom_store_prune(b.store, error);
     prom_store_close(b.store);
-    if (!status && all.drop_work) status = prom_store_delete(out_path, error);
     if (!status) status = prom_writer_finish(b.writer, error);
+    if (!status && all.drop_work) drop_work(out_path);
     if (!status) {
         prom_build_report made;
         fill_report(&b, out_path, &made);

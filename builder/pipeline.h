@@ -36,8 +36,8 @@ typedef struct prom_build_report {
 
 // Builds scene_path into out_path. On failure the model is as it was before, and what was done
 // so far is kept beside it in out_path.work: the next build goes on from there, whatever
-// stopped this one. Finished, the work file serves builds with other settings; it may be
-// deleted at any time. Uses prom_thread_count() cores.
+// stopped this one (prom_stop_request: PROM_ERR_STOPPED). Finished, the work file serves builds
+// with other settings; it may be deleted at any time. Uses prom_thread_count() cores.
 prom_status prom_build(const char *scene_path, const char *out_path,
                        const prom_build_options *options, prom_build_report *report,
                        prom_error *error);

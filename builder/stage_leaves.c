@@ -107,7 +107,6 @@ static void settled(prom_subject *s, uint32_t p)
         level->kept = s->candidates[l].kept;
         level->max_size_px = s->candidates[l].rep.max_size_px;
         prom_mesh_finish(&level->mesh); // it is in the container and on the device
-        level->mesh = (prom_mesh){0};
     }
 }
 

@@ -19,7 +19,6 @@ typedef struct levels_job {
     pthread_mutex_t lock;
     pthread_cond_t less;
     uint64_t room, taken; // bytes of memory
-    prom_error error;     // the first
 } levels_job;
 
 // A pavement, a stretch of road, a wall: flat, and likely to meet others at its border, which
@@ -55,11 +54,10 @@ static void finish_meshes(prom_shape_build *s)
         s->levels[l] = (prom_level){0};
     }
     prom_mesh_finish(&s->merge);
-    s->merge = (prom_mesh){0};
     s->level_count = 0;
 }
 
-static bool unpack_levels(prom_shape_build *s, const prom_pack *pack)
+static bool unpack_levels(prom_shape_build *s, const prom_pack *pack, uint32_t materials)
 {
     prom_unpack in = {.at = pack->data, .left = pack->count};
     s->level_count = prom_unpack_u32(&in, PROM_LEVELS_MAX);
@@ -68,34 +66,29 @@ static bool unpack_levels(prom_shape_build *s, const prom_pack *pack)
         level->artist = prom_unpack_u32(&in, 1);
         prom_unpack_bytes(&in, &level->error, sizeof level->error);
         prom_unpack_bytes(&in, &level->switch_distance, sizeof level->switch_distance);
-        prom_unpack_mesh(&in, &level->mesh);
+        prom_unpack_mesh(&in, materials, &level->mesh);
     }
-    prom_unpack_mesh(&in, &s->merge);
+    prom_unpack_mesh(&in, 0, &s->merge);
     prom_unpack_bytes(&in, &s->merge_error, sizeof s->merge_error);
     if (prom_unpack_end(&in) && s->level_count) return true;
     finish_meshes(s);
     return false;
 }
 
-static bool load_levels(levels_job *job, prom_shape_build *s)
+static bool load_levels(const prom_build_state *b, prom_shape_build *s)
 {
     prom_pack pack = {0};
-    bool known = prom_store_get(job->b->store, PROM_UNIT_LEVELS, s->levels_key, &pack) &&
-                 unpack_levels(s, &pack);
+    bool known = prom_store_get(b->store, PROM_UNIT_LEVELS, s->levels_key, &pack) &&
+                 unpack_levels(s, &pack, (uint32_t)b->source.materials.count);
     prom_array_finish(&pack);
     return known;
 }
 
-static void keep_levels(levels_job *job, const prom_shape_build *s)
+static void keep_levels(prom_build_state *b, const prom_shape_build *s)
 {
     prom_pack pack = {0};
-    prom_error error = {0};
     pack_levels(s, &pack);
-    if (prom_store_put(job->b->store, PROM_UNIT_LEVELS, s->levels_key, &pack, &error)) {
-        pthread_mutex_lock(&job->lock);
-        if (!job->error.status) job->error = error;
-        pthread_mutex_unlock(&job->lock);
-    }
+    prom_build_keep(b, PROM_UNIT_LEVELS, s->levels_key, &pack);
     prom_array_finish(&pack);
 }
 
@@ -191,24 +184,21 @@ static void levels_of_shape(void *user, size_t i, unsigned thread)
     levels_job *job = user;
     prom_shape *shape = &job->b->objects.shapes.data[i];
     prom_shape_build *s = &job->b->shapes[i];
+    if (prom_build_goes_on(job->b, NULL)) return;
     s->levels_key = prom_key_of_levels(job->b, (uint32_t)i);
-    if (load_levels(job, s)) {
+    if (load_levels(job->b, s)) {
         prom_progress_reused(&job->progress, 1);
     } else {
         uint64_t bytes = take_room(job, shape);
         make_levels(job->b, shape, s);
         give_room(job, bytes);
-        keep_levels(job, s);
+        keep_levels(job->b, s);
     }
     for (uint32_t l = 0; l < s->level_count; l++)
         s->hash = prom_mesh_hash(&s->levels[l].mesh, s->hash);
     // The levels hold it all now.
     prom_mesh_finish(&shape->mesh);
-    shape->mesh = (prom_mesh){0};
-    for (uint32_t l = 0; l < shape->level_count; l++) {
-        prom_mesh_finish(&shape->levels[l].mesh);
-        shape->levels[l].mesh = (prom_mesh){0};
-    }
+    for (uint32_t l = 0; l < shape->level_count; l++) prom_mesh_finish(&shape->levels[l].mesh);
     prom_progress_step(&job->progress, 1);
 }
 
@@ -255,15 +245,11 @@ prom_status prom_stage_levels(prom_build_state *b, prom_error *error)
     prom_parallel_for(count, levels_of_shape, &job);
     pthread_cond_destroy(&job.less);
     pthread_mutex_destroy(&job.lock);
-    if (job.error.status) {
-        *error = job.error;
-        return error->status;
-    }
+    prom_status status = prom_build_goes_on(b, error);
+    if (status) return status;
     prom_build_end_progress(b, &job.progress);
     b->mean_luminance = in_steps(mean_luminance(b));
-    for (size_t i = 0; i < b->source.images.count; i++) { // needed for the baked colours
+    for (size_t i = 0; i < b->source.images.count; i++) // needed for the baked colours
         prom_texture_finish(&b->textures[i]);
-        b->textures[i] = (prom_texture){0};
-    }
     return PROM_OK;
 }

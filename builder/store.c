@@ -35,10 +35,10 @@ static prom_status fail(prom_store *s, prom_error *error)
     const char *why = rc == SQLITE_FULL ? "the disk is full"
                       : s->db           ? sqlite3_errmsg(s->db)
                                         : "";
-    return prom_fail(error, PROM_ERR_OUTPUT,
-                     "cannot write %s: %s; make room and start again, "
-                     "the build will go on",
-                     s->path, why);
+    const char *then = rc == SQLITE_FULL   ? "make room and start again, the build will go on"
+                       : rc == SQLITE_BUSY ? "another program works on it"
+                                           : "start again, the build will go on";
+    return prom_fail(error, PROM_ERR_OUTPUT, "cannot write %s: %s; %s", s->path, why, then);
 }
 
 static void close_database(prom_store *s)
@@ -51,41 +51,62 @@ static void close_database(prom_store *s)
     s->get = s->put = s->touch = NULL;
 }
 
+#define TEXT_(x) #x
+#define TEXT(x) TEXT_(x)
+
 // Losing the last units with the power is no harm, so nothing is synced; the rollback journal
-// covers a killed process.
+// covers a killed process. The table comes with its marks, or not at all.
 static const char schema[] =
     "PRAGMA page_size=16384; PRAGMA auto_vacuum=FULL; PRAGMA journal_mode=DELETE;"
     "PRAGMA synchronous=OFF; PRAGMA locking_mode=EXCLUSIVE;"
     "PRAGMA temp_store=MEMORY;"
-    "CREATE TABLE IF NOT EXISTS unit(id INTEGER PRIMARY KEY, kind INTEGER NOT NULL,"
-    " key INTEGER NOT NULL, bytes INTEGER NOT NULL, checksum INTEGER NOT NULL,"
-    " data BLOB NOT NULL, UNIQUE(kind, key)) STRICT;"
-    "CREATE TEMP TABLE used(kind INTEGER, key INTEGER, PRIMARY KEY(kind, key)) WITHOUT ROWID;";
+    "BEGIN IMMEDIATE;"
+    "PRAGMA application_id=" TEXT(
+        APPLICATION_ID) ";"
+                        "PRAGMA user_version=" TEXT(
+                            FORMAT) ";"
+                                    "CREATE TABLE IF NOT EXISTS unit(id INTEGER PRIMARY KEY, "
+                                    "kind INTEGER NOT NULL,"
+                                    " key INTEGER NOT NULL, bytes INTEGER NOT NULL, checksum "
+                                    "INTEGER NOT NULL,"
+                                    " data BLOB NOT NULL, UNIQUE(kind, key)) STRICT;"
+                                    "COMMIT;"
+                                    "CREATE TEMP TABLE used(kind INTEGER, key INTEGER, PRIMARY "
+                                    "KEY(kind, key)) WITHOUT ROWID;";
 
-static int64_t pragma_value(sqlite3 *db, const char *sql)
+static bool read_number(sqlite3 *db, const char *sql, int64_t *value)
 {
     sqlite3_stmt *statement;
-    int64_t value = -1;
-    if (sqlite3_prepare_v2(db, sql, -1, &statement, NULL) == SQLITE_OK &&
-        sqlite3_step(statement) == SQLITE_ROW)
-        value = sqlite3_column_int64(statement, 0);
+    bool good = sqlite3_prepare_v2(db, sql, -1, &statement, NULL) == SQLITE_OK &&
+                sqlite3_step(statement) == SQLITE_ROW;
+    if (good) *value = sqlite3_column_int64(statement, 0);
     sqlite3_finalize(statement);
-    return value;
+    return good;
 }
 
-// An empty file, or a store of this format; anything else is not touched by SQL.
-static bool is_ours(sqlite3 *db)
+typedef enum owner { OURS, OF_ANOTHER_FORMAT, SOMEBODYS, UNREADABLE } owner;
+
+// An empty file is ours too. Only what is ours is touched by SQL.
+static owner owner_of(sqlite3 *db)
 {
-    int64_t id = pragma_value(db, "PRAGMA application_id");
-    if (id == 0 && pragma_value(db, "SELECT count(*) FROM sqlite_schema") == 0) return true;
-    return id == APPLICATION_ID && pragma_value(db, "PRAGMA user_version") == FORMAT;
+    int64_t id, format, tables;
+    if (!read_number(db, "PRAGMA application_id", &id) ||
+        !read_number(db, "PRAGMA user_version", &format) ||
+        !read_number(db, "SELECT count(*) FROM sqlite_schema", &tables))
+        return UNREADABLE;
+    if (id == 0 && tables == 0) return OURS;
+    if (id != APPLICATION_ID) return SOMEBODYS;
+    return format == FORMAT ? OURS : OF_ANOTHER_FORMAT;
 }
 
-static bool open_database(prom_store *s)
+static bool prepare(prom_store *s, const char *sql, sqlite3_stmt **statement)
 {
-    char marks[96];
-    snprintf(marks, sizeof marks, "PRAGMA application_id=%d; PRAGMA user_version=%d;",
-             APPLICATION_ID, FORMAT);
+    return sqlite3_prepare_v2(s->db, sql, -1, statement, NULL) == SQLITE_OK;
+}
+
+static bool open_database(prom_store *s, owner *found)
+{
+    *found = UNREADABLE;
     char *name = s->path[0] == '/' ? prom_strdup(s->path) : prom_format("./%s", s->path);
     int rc = sqlite3_open_v2(
         name, &s->db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX, NULL);
@@ -93,16 +114,12 @@ static bool open_database(prom_store *s)
     if (rc != SQLITE_OK) return false;
     sqlite3_db_config(s->db, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
     sqlite3_db_config(s->db, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
-    return is_ours(s->db) && sqlite3_exec(s->db, schema, NULL, NULL, NULL) == SQLITE_OK &&
-           sqlite3_exec(s->db, marks, NULL, NULL, NULL) == SQLITE_OK &&
-           sqlite3_prepare_v2(s->db,
-                              "SELECT bytes, checksum, data FROM unit"
-                              " WHERE kind=? AND key=?",
-                              -1, &s->get, NULL) == SQLITE_OK &&
-           sqlite3_prepare_v2(s->db, "INSERT OR IGNORE INTO used VALUES(?,?)", -1, &s->touch,
-                              NULL) == SQLITE_OK &&
-           sqlite3_prepare_v2(s->db, "INSERT OR REPLACE INTO unit VALUES(NULL,?,?,?,?,?)", -1,
-                              &s->put, NULL) == SQLITE_OK;
+    *found = owner_of(s->db);
+    return *found == OURS && sqlite3_exec(s->db, schema, NULL, NULL, NULL) == SQLITE_OK &&
+           prepare(s, "SELECT bytes, checksum, data FROM unit WHERE kind=? AND key=?",
+                   &s->get) &&
+           prepare(s, "INSERT OR IGNORE INTO used VALUES(?,?)", &s->touch) &&
+           prepare(s, "INSERT OR REPLACE INTO unit VALUES(NULL,?,?,?,?,?)", &s->put);
 }
 
 static void unlink_files(const char *path)
@@ -124,31 +141,41 @@ static bool looks_like_a_store(const char *path)
     return f && !memcmp(start, magic, n);
 }
 
+// Damaged, of another format, or deleted by somebody while we work in it: what it held is lost,
+// which costs time only.
+static bool is_lost(sqlite3 *db)
+{
+    int rc = sqlite3_errcode(db);
+    return rc == SQLITE_CORRUPT || rc == SQLITE_NOTADB || rc == SQLITE_ERROR ||
+           sqlite3_extended_errcode(db) == SQLITE_READONLY_DBMOVED;
+}
+
+static bool start_over(prom_store *s)
+{
+    owner found;
+    prom_log(PROM_LOG_WARNING, "%s: cannot be used, a new one is begun", s->path);
+    close_database(s);
+    unlink_files(s->path);
+    return open_database(s, &found);
+}
+
 prom_store *prom_store_open(const char *model_path, prom_unit_kind redo, prom_error *error)
 {
     prom_store *s = prom_calloc(1, sizeof *s);
+    owner found;
     s->path = prom_store_path(model_path);
     s->redo = redo;
     pthread_mutex_init(&s->lock, NULL);
-    if (open_database(s)) return s;
-    int rc = s->db ? sqlite3_errcode(s->db) : SQLITE_NOMEM;
-    if (rc == SQLITE_NOTADB && !looks_like_a_store(s->path)) {
+    if (open_database(s, &found)) return s;
+    bool is_database = !s->db || sqlite3_errcode(s->db) != SQLITE_NOTADB;
+    if (found == SOMEBODYS || (!is_database && !looks_like_a_store(s->path)))
         prom_fail(error, PROM_ERR_OUTPUT,
                   "%s: is not the work file of a build, which would stand there; rename it",
                   s->path);
-        prom_store_close(s);
-        return NULL;
-    }
-    // Damaged, or of another format: what it held is lost, which costs time only.
-    bool replaceable = rc == SQLITE_OK || rc == SQLITE_CORRUPT || rc == SQLITE_NOTADB ||
-                       rc == SQLITE_ERROR || rc == SQLITE_ROW || rc == SQLITE_DONE;
-    if (replaceable) {
-        prom_log(PROM_LOG_WARNING, "%s: cannot be used, all is done again", s->path);
-        close_database(s);
-        unlink_files(s->path);
-        if (open_database(s)) return s;
-    }
-    fail(s, error);
+    else if ((found == OF_ANOTHER_FORMAT || (s->db && is_lost(s->db))) && start_over(s))
+        return s;
+    else
+        fail(s, error);
     prom_store_close(s);
     return NULL;
 }
@@ -179,8 +206,9 @@ prom_status prom_store_prune(prom_store *store, prom_error *error)
 {
     const char *sql = "DELETE FROM unit WHERE NOT EXISTS (SELECT 1 FROM used"
                       " WHERE used.kind=unit.kind AND used.key=unit.key)";
-    return sqlite3_exec(store->db, sql, NULL, NULL, NULL) == SQLITE_OK ? PROM_OK
-                                                                       : fail(store, error);
+    bool good = sqlite3_exec(store->db, sql, NULL, NULL, NULL) == SQLITE_OK;
+    if (!good && is_lost(store->db)) good = start_over(store);
+    return good ? PROM_OK : fail(store, error);
 }
 
 static void bind_key(sqlite3_stmt *statement, prom_unit_kind kind, uint64_t key)
@@ -236,6 +264,21 @@ bool prom_store_get(prom_store *store, prom_unit_kind kind, uint64_t key, prom_p
     return good;
 }
 
+// With the lock held.
+static bool insert(prom_store *s, prom_unit_kind kind, uint64_t key, size_t bytes,
+                   const void *packed, size_t packed_bytes)
+{
+    bind_key(s->put, kind, key);
+    sqlite3_bind_int64(s->put, 3, (int64_t)bytes);
+    sqlite3_bind_int64(s->put, 4, (int64_t)prom_hash(packed, packed_bytes, bytes));
+    sqlite3_bind_blob64(s->put, 5, packed, packed_bytes, SQLITE_STATIC);
+    bool good = sqlite3_step(s->put) == SQLITE_DONE;
+    sqlite3_reset(s->put); // what went wrong stays the connection's last error
+    sqlite3_clear_bindings(s->put);
+    if (good) note_use(s, kind, key);
+    return good;
+}
+
 prom_status prom_store_put(prom_store *store, prom_unit_kind kind, uint64_t key,
                            const prom_pack *pack, prom_error *error)
 {
@@ -247,14 +290,11 @@ prom_status prom_store_put(prom_store *store, prom_unit_kind kind, uint64_t key,
     prom_status status = PROM_OK;
     if (!ZSTD_isError(bytes)) {
         pthread_mutex_lock(&store->lock);
-        bind_key(store->put, kind, key);
-        sqlite3_bind_int64(store->put, 3, (int64_t)pack->count);
-        sqlite3_bind_int64(store->put, 4, (int64_t)prom_hash(packed.data, bytes, pack->count));
-        sqlite3_bind_blob64(store->put, 5, packed.data, bytes, SQLITE_STATIC);
-        if (sqlite3_step(store->put) != SQLITE_DONE) status = fail(store, error);
-        sqlite3_reset(store->put);
-        sqlite3_clear_bindings(store->put);
-        if (!status) note_use(store, kind, key);
+        bool good = insert(store, kind, key, pack->count, packed.data, bytes);
+        if (!good && is_lost(store->db))
+            good =
+                start_over(store) && insert(store, kind, key, pack->count, packed.data, bytes);
+        if (!good) status = fail(store, error);
         pthread_mutex_unlock(&store->lock);
     }
     prom_array_finish(&packed);

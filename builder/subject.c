@@ -213,12 +213,8 @@ static prom_status write_subject(prom_subject *s, prom_error *error)
 
 static void clear(prom_subject *s)
 {
-    for (int i = 0; i < PROM_BOXES; i++) {
-        prom_mesh_finish(&s->box_meshes[i]);
-        s->box_meshes[i] = (prom_mesh){0};
-    }
+    for (int i = 0; i < PROM_BOXES; i++) prom_mesh_finish(&s->box_meshes[i]);
     prom_texture_finish(&s->picture);
-    s->picture = (prom_texture){0};
     prom_free(s->shares);
     s->shares = NULL;
     s->count = s->comparison_count = s->child_count = 0;
@@ -291,6 +287,8 @@ prom_status prom_subjects_run(prom_build_state *b, const prom_subject_class *cla
     for (uint32_t i = 0; i < slots; i++) subjects[i].build = b;
     prom_status status = PROM_OK;
     while (ended < count && !status) {
+        status = prom_build_goes_on(b, error);
+        if (status) break;
         bool full = begun - ended == slots;
         uint32_t next = full || begun == count ? ended : begun;
         uint32_t index = index_of ? index_of[next] : next;
@@ -300,7 +298,7 @@ prom_status prom_subjects_run(prom_build_state *b, const prom_subject_class *cla
             ended++;
         } else {
             status = begin(s, class, index, error);
-            begun++;
+            if (!status) begun++; // else it is not measured, and not to be waited for
         }
     }
     // After a failure some may still be measured.

@@ -59,19 +59,15 @@ bool prom_subject_unpack(prom_subject *s, const prom_pack *pack)
         if (i >= meshes)
             prom_subject_add(s, &s->box_meshes[i - meshes], &none, PROM_ADMIT_MEASURED);
         unpack_candidate(&s->candidates[i], &in);
-        if (i >= meshes) prom_unpack_mesh(&in, &s->box_meshes[i - meshes]);
+        if (i >= meshes) prom_unpack_mesh(&in, 0, &s->box_meshes[i - meshes]);
         if (s->candidates[i].pictured && !in.failed) {
             if (i < meshes || s->picture.pixels) in.failed = true;
             if (!in.failed) prom_unpack_texture(&in, &s->picture);
         }
     }
     if (prom_unpack_end(&in)) return true;
-    for (int i = 0; i < PROM_BOXES; i++) {
-        prom_mesh_finish(&s->box_meshes[i]);
-        s->box_meshes[i] = (prom_mesh){0};
-    }
+    for (int i = 0; i < PROM_BOXES; i++) prom_mesh_finish(&s->box_meshes[i]);
     prom_texture_finish(&s->picture);
-    s->picture = (prom_texture){0};
     s->count = added; // as if there had been nothing
     s->first_box = PROM_CANDIDATES_MAX;
     return false;

@@ -4,9 +4,11 @@
 
 #include "metaobj/base/hash.h"
 
+#include <link.h>
 #include <stdio.h>
+#include <time.h>
 
-// Another program may compute otherwise: its own bytes are part of every key.
+// The program's own bytes. One that cannot be read is equal to no other.
 static uint64_t hash_of_program(void)
 {
     enum { BLOCK = 1 << 16 };
@@ -14,20 +16,44 @@ static uint64_t hash_of_program(void)
     FILE *f = fopen("/proc/self/exe", "rb");
     uint8_t *block = prom_alloc(BLOCK, 1);
     for (size_t n; f && (n = fread(block, 1, BLOCK, f)) > 0;) h = prom_hash(block, n, h);
+    if (!f || ferror(f)) {
+        struct timespec now;
+        clock_gettime(CLOCK_REALTIME, &now);
+        const int64_t moment[2] = {now.tv_sec, now.tv_nsec};
+        h = prom_hash(moment, sizeof moment, h);
+    }
     prom_free(block);
     if (f) fclose(f);
     return h;
 }
 
+// The notes of a library hold the id of its build.
+static int add_library(struct dl_phdr_info *library, size_t size, void *user)
+{
+    (void)size;
+    uint64_t *h = user;
+    if (!strncmp(library->dlpi_name, "linux-vdso", 10)) return 0; // the kernel's: no results
+    for (int i = 0; i < library->dlpi_phnum; i++) {
+        const ElfW(Phdr) *part = &library->dlpi_phdr[i];
+        const void *notes = (const void *)(library->dlpi_addr + part->p_vaddr);
+        if (part->p_type == PT_NOTE) *h = prom_hash(notes, part->p_memsz, *h);
+    }
+    return 0;
+}
+
+// Another program may compute otherwise, and so may this one with other libraries.
 void prom_keys_of_program(prom_build_state *b)
 {
     b->program_key = hash_of_program();
+    dl_iterate_phdr(add_library, &b->program_key);
 }
 
 void prom_keys_of_device(prom_build_state *b)
 {
-    const char *renderer = prom_context_renderer(b->context);
-    b->device_key = prom_hash(renderer, strlen(renderer), b->program_key);
+    const char *device = prom_context_renderer(b->context);
+    const char *driver = prom_context_version(b->context);
+    b->device_key = prom_hash(device, strlen(device), b->program_key);
+    b->device_key = prom_hash(driver, strlen(driver), b->device_key);
 }
 
 void prom_keys_of_materials(prom_build_state *b)
@@ -45,9 +71,11 @@ void prom_keys_of_materials(prom_build_state *b)
     prom_free(pictures);
 }
 
+// prom_mesh_hash takes turned triangles for equal, but what is made of them need not be.
 static uint64_t hash_mesh(const prom_build_state *b, const prom_mesh *mesh, uint64_t h)
 {
     h = prom_mesh_hash(mesh, h);
+    h = prom_hash(mesh->indices, mesh->index_count * sizeof *mesh->indices, h);
     for (uint32_t s = 0; s < mesh->submesh_count; s++) {
         uint32_t m = mesh->submeshes[s].material;
         if (m != PROM_NONE) h = prom_hash(&b->material_keys[m], sizeof *b->material_keys, h);
@@ -83,39 +111,12 @@ uint64_t prom_key_of_leaf(const prom_build_state *b, uint32_t shape)
     return prom_hash(&levels, sizeof levels, measured(b, shape));
 }
 
-typedef uint64_t (*child_key)(const prom_build_state *b, const prom_tree_node *child);
-
-static uint64_t merge_key_of_child(const prom_build_state *b, const prom_tree_node *child)
+void prom_key_add_placed(uint64_t *key, uint64_t part, const double origin[3],
+                         const float basis[9])
 {
-    return child->object != PROM_NONE
-               ? b->shapes[b->objects.objects.data[child->object].shape].levels_key
-               : b->clusters[child->cluster].merge_key;
-}
-
-static uint64_t cluster_key_of_child(const prom_build_state *b, const prom_tree_node *child)
-{
-    return child->object != PROM_NONE
-               ? b->shapes[b->objects.objects.data[child->object].shape].leaf_key
-               : b->clusters[child->cluster].cluster_key;
-}
-
-// The children and where they stand in the cluster's frame.
-static uint64_t hash_children(const prom_build_state *b, uint32_t node, child_key key_of,
-                              uint64_t h)
-{
-    const prom_tree_node *n = &b->tree.nodes.data[node];
-    for (uint32_t c = n->first_child; c < n->first_child + n->child_count; c++) {
-        const prom_tree_node *child = &b->tree.nodes.data[c];
-        uint64_t key = key_of(b, child);
-        prom_placement at = prom_placement_identity;
-        memcpy(at.origin, child->origin, sizeof at.origin);
-        if (child->object != PROM_NONE) at = b->objects.objects.data[child->object].placement;
-        for (int a = 0; a < 3; a++) at.origin[a] -= n->origin[a];
-        h = prom_hash(&key, sizeof key, h);
-        h = prom_hash(at.origin, sizeof at.origin, h);
-        h = prom_hash(at.basis, sizeof at.basis, h);
-    }
-    return h;
+    uint64_t h = prom_hash(&part, sizeof part, *key);
+    h = prom_hash(origin, 3 * sizeof *origin, h);
+    *key = prom_hash(basis, 9 * sizeof *basis, h);
 }
 
 static uint64_t hash_cluster(const prom_tree_cluster *c, uint64_t h)
@@ -126,19 +127,17 @@ static uint64_t hash_cluster(const prom_tree_cluster *c, uint64_t h)
 
 uint64_t prom_key_of_merge(const prom_build_state *b, uint32_t cluster)
 {
-    const prom_tree_cluster *c = &b->tree.clusters.data[cluster];
-    return hash_children(b, c->node, merge_key_of_child, hash_cluster(c, b->program_key));
+    return hash_cluster(&b->tree.clusters.data[cluster], b->program_key);
 }
 
-// The bounds are part of it: they depend on places in the world, by rounding.
 uint64_t prom_key_of_cluster(const prom_build_state *b, uint32_t cluster)
 {
-    const prom_tree_cluster *c = &b->tree.clusters.data[cluster];
     uint32_t p = (uint32_t)b->objects.shapes.count + cluster;
     const prom_prototype *proto = &b->prototypes[p];
-    uint64_t h = hash_cluster(c, measured(b, p));
+    const uint64_t merge = b->clusters[cluster].merge_key;
+    uint64_t h = hash_cluster(&b->tree.clusters.data[cluster], measured(b, p));
     h = prom_hash(proto->center, sizeof proto->center, h);
     h = prom_hash(proto->half, sizeof proto->half, h);
     h = prom_hash(&proto->radius, sizeof proto->radius, h);
-    return hash_children(b, c->node, cluster_key_of_child, h);
+    return prom_hash(&merge, sizeof merge, h);
 }

@@ -57,7 +57,13 @@ static void build_facade(prom_gallery *g, prom_solid *s, prom_gallery_side side,
                                 {12.0f, 0.34f}, {12.15f, 0.40f}, {12.16f, 0}};
     const float belt[][2] = {{5.6f, 0}, {5.64f, 0.08f}, {5.9f, 0.10f}, {5.95f, 0}};
     prom_solid_moulding(s, cornice, 6, 0, length);
-    prom_solid_moulding(s, belt, 4, 0, length);
+    float from = 0; // the belt stops at windows that reach over it
+    for (int i = 0; i < n; i++) {
+        if (holes[i].v0 > 5.6f || holes[i].v1 < 5.95f) continue;
+        prom_solid_moulding(s, belt, 4, from, holes[i].u0 - 0.16f);
+        from = holes[i].u1 + 0.16f;
+    }
+    prom_solid_moulding(s, belt, 4, from, length);
     prom_solid_leave(s, old);
 }
 

@@ -50,7 +50,7 @@ static look look_of(prom_gallery *g, const prom_gallery_room *room)
         l.wall = l.dado = l.frieze = prom_gallery_paint(g, PROM_GALLERY_ASHLAR, 0xfff8ea, 2.4f);
         l.wall =
             prom_gallery_paint(g, PROM_GALLERY_PLASTER,
-                               room->kind == PROM_GALLERY_HALL ? 0xf6e0b8 : 0xf2dcc0, 2.0f);
+                               room->kind == PROM_GALLERY_HALL ? 0xf6e0b8 : 0xfaf0e2, 2.0f);
         l.frieze = white;
         l.skirting = prom_gallery_paint(g, PROM_GALLERY_MARBLE, 0xa8a29a, 1.0f);
         l.frame = prom_gallery_paint(g, PROM_GALLERY_MARBLE, 0xe6dccb, 1.0f);

@@ -151,10 +151,10 @@ void prom_gallery_build_stairs(prom_gallery *g, uint32_t id, uint32_t parent)
     flight_rail(g, &rails, &f[1], -1);
     flight_rail(g, &rails, &f[2], 1);
     // The landings' open edges.
-    prom_gallery_balustrade(g, &rails, (float[]){room->x0 + 0.12f, upper, f[1].z1 - 0.12f},
-                            (float[]){inner + 0.12f, upper, f[1].z1 - 0.12f});
-    prom_gallery_balustrade(g, &rails, (float[]){outer - 0.12f, half, f[1].z0 + 0.12f},
-                            (float[]){inner + 0.12f, half, f[1].z0 + 0.12f});
+    prom_gallery_balustrade(g, &rails, (float[]){room->x0 + 0.12f, upper, f[1].z1},
+                            (float[]){inner + 0.12f, upper, f[1].z1});
+    prom_gallery_balustrade(g, &rails, (float[]){outer - 0.12f, half, f[1].z0},
+                            (float[]){inner + 0.12f, half, f[1].z0});
     prom_gallery_add(g, parent, "stairs", &steps);
     prom_gallery_add(g, parent, "balustrades", &rails);
 }

@@ -52,7 +52,7 @@ static void lay_out(const prom_gallery *g, way *w)
           east = prom_gallery_column_middle(plan, c + 3);
     float up = PROM_GALLERY_UPPER, half = 0.5f * up;
     float round = prom_gallery_column_middle(plan, c + 1), middle = f[0].x;
-    go(w, plan->column_x[c][1] - 1.6f, 0, axis);
+    go(w, plan->column_x[c][1] - 1.0f, 0, axis);
     go(w, round - 2.7f, 0, axis);
     for (int i = 1; i < 8; i++) { // around the statue
         float a = 3.14159265f * (1 - (float)i / 8);
@@ -79,7 +79,7 @@ static void lay_out(const prom_gallery *g, way *w)
     go(w, f[2].x, 0, landing);
     go(w, east, 0, landing);
     go(w, east, 0, axis);
-    go(w, hall->x1 - 0.8f, 0, axis);
+    go(w, hall->x1 - 0.6f, 0, axis);
 }
 
 // Means over a window that is cut at both ends, so that corners become round; a straight way

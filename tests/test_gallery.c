@@ -268,7 +268,7 @@ static void meet_triangle(const triangle *t, void *context)
 static void check_pace(const prom_path *path)
 {
     const prom_path_key *k = path->keys.data;
-    assert_true(path->keys.count >= 600 && path->keys.count <= 1830);
+    assert_true(path->keys.count >= 600 && path->keys.count <= 1800);
     double high = 0, last = 0;
     for (size_t i = 0; i < path->keys.count; i++) {
         high = fmax(high, k[i].position[1]);

@@ -12,6 +12,7 @@ typedef enum prom_status {
     PROM_ERR_UNSUPPORTED = 3, // no GL, or something that this build cannot do
     PROM_ERR_OUTPUT = 4,      // the output cannot be written
     PROM_ERR_THRESHOLD = 5,   // a threshold asked for was missed
+    PROM_ERR_STOPPED = 130,   // ended early by Ctrl-C or the like
 } prom_status;
 
 typedef struct prom_error {
