@@ -304,9 +304,6 @@ static prom_build_options resolved(const prom_build_options *options)
     o.objects = prom_object_options_resolved(o.objects);
     if (!o.tree.max_children) o.tree.max_children = 16;
     if (!o.texture_mb) o.texture_mb = 256;
-    uint64_t memory = (uint64_t)o.memory_mb << 20;
-    if (memory && (!o.import.memory_bytes || o.import.memory_bytes > memory))
-        o.import.memory_bytes = memory;
     return o;
 }
 

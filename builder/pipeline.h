@@ -21,7 +21,9 @@ typedef struct prom_build_options {
     prom_tree_options tree;
     uint32_t texture_mb; // bytes of impostor pictures on the device, in MiB; 0: 256
     const char *profile; // cost profile that the content names; NULL: none
-    uint32_t memory_mb;  // that the work may take, beside what the device's driver does; 0: any
+    // That the work may take, beside what the device's driver does; 0: any. It changes nothing in
+    // the model, and so is no limit on import, which has its own.
+    uint32_t memory_mb;
     // What earlier builds left in X.prom.work:
     prom_build_from from; // stages from this one on are done anew
     bool drop_work;       // it is deleted when the build has succeeded

@@ -35,9 +35,10 @@ static prom_status fail(prom_store *s, prom_error *error)
     const char *why = rc == SQLITE_FULL ? "the disk is full"
                       : s->db           ? sqlite3_errmsg(s->db)
                                         : "";
-    const char *then = rc == SQLITE_FULL   ? "make room and start again, the build will go on"
-                       : rc == SQLITE_BUSY ? "another program works on it"
-                                           : "start again, the build will go on";
+    const char *then = "start again, the build will go on";
+    if (rc == SQLITE_FULL) then = "make room and start again, the build will go on";
+    if (rc == SQLITE_BUSY) then = "another program works on it";
+    if (rc == SQLITE_CANTOPEN) then = "see what stands there";
     return prom_fail(error, PROM_ERR_OUTPUT, "cannot write %s: %s; %s", s->path, why, then);
 }
 

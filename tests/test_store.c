@@ -101,10 +101,12 @@ static void pruning_keeps_what_was_used(void **state)
     prom_store_close(store);
 }
 
-// Every byte of the file, one at a time: units come back as they were, or not at all.
+// Bytes all over the file, one at a time: units come back as they were, or not at all, and new
+// ones are taken.
 static void damage_costs_units_and_nothing_else(void **state)
 {
     (void)state;
+    prom_error error = {0};
     prom_log_set_level(PROM_LOG_ERROR);
     prom_store *store = open_store(PROM_UNIT_COUNT);
     for (uint64_t k = 0; k < 8; k++) put(store, PROM_UNIT_LEAF, k, "a unit of work, in bytes");
@@ -125,6 +127,9 @@ static void damage_costs_units_and_nothing_else(void **state)
         store = open_store(PROM_UNIT_COUNT);
         for (uint64_t k = 0; k < 8; k++)
             lost += !has(store, PROM_UNIT_LEAF, k, "a unit of work, in bytes");
+        for (uint64_t k = 0; k < 16; k++) put(store, PROM_UNIT_LEAF, k, "made again");
+        assert_true(has(store, PROM_UNIT_LEAF, 15, "made again"));
+        assert_int_equal(prom_store_prune(store, &error), PROM_OK);
         prom_store_close(store);
     }
     assert_true(lost > 0);
@@ -168,11 +173,34 @@ static void another_file_of_that_name_is_not_touched(void **state)
     assert_string_equal(text, notes);
 }
 
+static void another_programs_database_is_not_touched(void **state)
+{
+    (void)state;
+    prom_error error = {0};
+    sqlite3 *db = NULL;
+    assert_int_equal(sqlite3_open(WORK, &db), SQLITE_OK);
+    assert_int_equal(sqlite3_exec(db, "CREATE TABLE hours(n)", NULL, NULL, NULL), SQLITE_OK);
+    sqlite3_close(db);
+    assert_null(prom_store_open(MODEL, PROM_UNIT_COUNT, &error));
+    assert_int_equal(error.status, PROM_ERR_OUTPUT);
+    assert_non_null(strstr(error.text, WORK));
+    assert_int_equal(sqlite3_open(WORK, &db), SQLITE_OK);
+    assert_int_equal(sqlite3_exec(db, "INSERT INTO hours VALUES(8)", NULL, NULL, NULL),
+                     SQLITE_OK);
+    sqlite3_close(db);
+}
+
 static void deleting_is_allowed_any_time(void **state)
 {
     (void)state;
     prom_error error = {0};
     prom_store *store = open_store(PROM_UNIT_COUNT);
+    put(store, PROM_UNIT_LEAF, 1, "one");
+    unlink(WORK);
+    put(store, PROM_UNIT_LEAF, 2, "two");
+    assert_true(has(store, PROM_UNIT_LEAF, 2, "two"));
+    prom_store_close(store);
+    store = open_store(PROM_UNIT_COUNT);
     put(store, PROM_UNIT_LEAF, 1, "one");
     prom_store_close(store);
     assert_int_equal(prom_store_delete(MODEL, &error), PROM_OK);
@@ -191,6 +219,7 @@ int main(void)
         cmocka_unit_test_setup(damage_costs_units_and_nothing_else, fresh),
         cmocka_unit_test_setup(a_full_disk_is_an_error_that_says_so, fresh),
         cmocka_unit_test_setup(another_file_of_that_name_is_not_touched, fresh),
+        cmocka_unit_test_setup(another_programs_database_is_not_touched, fresh),
         cmocka_unit_test_setup(deleting_is_allowed_any_time, fresh),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
