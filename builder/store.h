@@ -2,9 +2,10 @@
 // file X.prom.work beside the model X.prom.
 //
 // A build that is cut off goes on from it, and a build with another setting or a changed scene
-// takes from it what is still right. Deleting the file costs only time. A unit is kept in a
-// transaction of its own; the process may be killed at any moment. Each entry has a checksum,
-// and what cannot be read counts as not there.
+// takes from it what is still right. Deleting the file costs only time, even under a running
+// build. A unit is kept in a transaction of its own; the process may be killed at any moment.
+// Each entry has a checksum, and what cannot be read counts as not there; a damaged file is
+// begun anew.
 #ifndef PROM_BUILDER_STORE_H
 #define PROM_BUILDER_STORE_H
 
@@ -22,7 +23,8 @@ typedef enum prom_unit_kind {
     PROM_UNIT_COUNT
 } prom_unit_kind;
 
-// Opens the store of the model at `model_path`, or starts one; a damaged one is replaced.
+// Opens the store of the model at `model_path`, or starts one; a damaged one is replaced,
+// anything that is no store is left alone.
 // Units of kinds from `redo` on are not given back (PROM_UNIT_COUNT: all are). The caller holds
 // the lock on the model's .part. NULL with *error if it cannot be written.
 prom_store *prom_store_open(const char *model_path, prom_unit_kind redo, prom_error *error);

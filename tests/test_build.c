@@ -29,7 +29,7 @@ static void same_input_gives_same_content(void **state)
 {
     (void)state;
     if (!have_gl()) skip();
-    write_street("build_scene.obj", 60, -1, 0);
+    write_street("build_scene.obj", 30, -1, 0);
     prom_build_options options = {.objects = {.min_triangles = 24}};
     uint64_t hashes[2];
     prom_error error = {0};
@@ -39,7 +39,7 @@ static void same_input_gives_same_content(void **state)
         prom_status status =
             prom_build("build_scene.obj", "build_scene.prom", &options, &report, &error);
         if (status) fail_msg("%s", error.text);
-        assert_int_equal(report.source_triangles, 60 * 12);
+        assert_int_equal(report.source_triangles, 30 * 12);
         assert_true(report.nodes > report.objects);
         assert_true(report.max_children <= 16);
         prom_container *c = prom_container_open("build_scene.prom", &error);
@@ -57,7 +57,7 @@ static void tables_of_a_built_model_hold(void **state)
 {
     (void)state;
     if (!have_gl()) skip();
-    write_street("tables_scene.obj", 60, -1, 0);
+    write_street("tables_scene.obj", 40, -1, 0);
     prom_build_options options = {.objects = {.min_triangles = 12}};
     prom_error error = {0};
     assert_int_equal(
@@ -118,7 +118,7 @@ static void only_what_depends_on_a_change_is_done_again(void **state)
     if (!have_gl()) skip();
     prom_build_options options = {.objects = {.min_triangles = 12}};
     unlink("units.prom.work");
-    write_street("units_scene.obj", 60, -1, 0);
+    write_street("units_scene.obj", 30, -1, 0);
     prom_build_report first = build_street(&options);
     assert_int_equal(first.units_taken, 0);
     uint64_t content = content_of("units.prom");
@@ -137,7 +137,7 @@ static void only_what_depends_on_a_change_is_done_again(void **state)
 
     // Another house: its own units and the clusters above it.
     build_street(&options);
-    write_street("units_scene.obj", 60, 33, 0.5);
+    write_street("units_scene.obj", 30, 17, 0.5);
     prom_build_report house = build_street(&options);
     assert_true(house.units_taken >= 2 * (house.objects - 1));
     assert_true(house.units_taken < house.units - 2);
