@@ -23,10 +23,10 @@ typedef enum prom_unit_kind {
     PROM_UNIT_COUNT
 } prom_unit_kind;
 
-// Opens the store of the model at `model_path`, or starts one; a damaged one is replaced,
-// anything that is no store is left alone.
-// Units of kinds from `redo` on are not given back (PROM_UNIT_COUNT: all are). The caller holds
-// the lock on the model's .part. NULL with *error if it cannot be written.
+// Opens the store of the model at `model_path`, or starts one. A damaged one is replaced; what
+// is no store is left alone, an error. Units of kinds from `redo` on are not given back
+// (PROM_UNIT_COUNT: all are). The caller holds the lock on the model's .part. NULL with *error
+// if it cannot be opened or written.
 prom_store *prom_store_open(const char *model_path, prom_unit_kind redo, prom_error *error);
 // Keeps the file. NULL is allowed.
 void prom_store_close(prom_store *store);
