@@ -60,7 +60,7 @@ paths_of() {
 build() {
     [ -f "$out/models/$1.prom" ] && [ -f "$out/$1.build.txt" ] && return
     echo "building $1" >&2
-    "$program" build "$2" -o "$out/models/$1.prom" > "$out/$1.build.txt.part"
+    "$program" build "$2" -o "$out/models/$1.prom" --force --drop-work > "$out/$1.build.txt.part"
     mv "$out/$1.build.txt.part" "$out/$1.build.txt"
 }
 
