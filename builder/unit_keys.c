@@ -56,8 +56,22 @@ void prom_keys_of_device(prom_build_state *b)
     b->device_key = prom_hash(driver, strlen(driver), b->device_key);
 }
 
+// The renderer draws in the order of the sizes in which pictures come first; where faces of
+// different pictures lie at equal depth, what is seen depends on it.
+static uint64_t hash_of_size_order(const prom_build_state *b, uint64_t h)
+{
+    uint64_t seen = 0; // sides are powers of two
+    for (size_t i = 0; i < b->source.images.count; i++) {
+        uint32_t side = b->textures[i].width;
+        if (!(seen & side)) h = prom_hash(&side, sizeof side, h);
+        seen |= side;
+    }
+    return h;
+}
+
 void prom_keys_of_materials(prom_build_state *b)
 {
+    b->device_key = hash_of_size_order(b, b->device_key);
     b->material_keys = prom_calloc(b->source.materials.count, sizeof *b->material_keys);
     uint64_t *pictures = prom_calloc(b->source.images.count, sizeof *pictures);
     for (size_t i = 0; i < b->source.images.count; i++)
