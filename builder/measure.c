@@ -117,6 +117,7 @@ static void composite(const prom_measure *m, const level *in, uint32_t side, flo
         const float *l = in->luminance + (size_t)y * side, *c = in->coverage + (size_t)y * side;
         float *g = grey + (size_t)(y + PAD) * wide + PAD;
         for (uint32_t x = 0; x < side; x++) {
+            if (c[x] <= 0.0f) continue; // nothing there: half of a view and more
             float v = l[x] + (1.0f - c[x]) * background;
             v = v < 0.0f ? 0.0f : v > 1.0f ? 1.0f : v;
             g[x] = m->encode[(int)(v * ENCODE_STEPS + 0.5f)];
@@ -167,7 +168,8 @@ static uint8_t compare_size(const prom_measure *m, uint32_t size, const level *i
     const float *covered = s->covered[size].coverage;
     const size_t window = window_pixels(size);
     double area = 0, error = 0;
-    for (size_t i = 0; i < (size_t)side * side; i++) area += fmaxf(covered[i], in->coverage[i]);
+    for (size_t i = 0; i < (size_t)side * side; i++)
+        area += covered[i] > in->coverage[i] ? covered[i] : in->coverage[i];
     for (int b = 0; b < BACKGROUNDS; b++, truth += 2 * window) {
         composite(m, in, side, m->background[b], s->grey);
         prom_edge_blur_features(s->grey, wide, wide, s->features, s->metric);
