@@ -13,13 +13,20 @@
 _Static_assert(PROM_VIEW_PX >> (PROM_SIZES - 1 - GAP_SIZE) == PROM_GAP_PX,
                "gaps have a size bin");
 
-// One picture at one size.
+// The part of a view in which something is to be seen: all else is background in every picture
+// and cannot err. In whole pixels of the smallest size, so that halving stays within it.
+typedef struct frame {
+    uint32_t x, y, width, height; // at the largest size
+} frame;
+
+// One picture at one size, of the frame's part alone.
 typedef struct level {
     float luminance[PROM_VIEW_PIXELS], coverage[PROM_VIEW_PIXELS];
 } level;
 
 // What a thread works in.
 typedef struct scratch {
+    frame frame; // of the present direction
     level levels[2];
     float grey[WINDOW_MAX * WINDOW_MAX], error[WINDOW_MAX * WINDOW_MAX];
     float features[2 * WINDOW_MAX * WINDOW_MAX];
@@ -78,14 +85,68 @@ void prom_measure_destroy(prom_measure *m)
     prom_free(m);
 }
 
-// A view of the atlas as linear luminance times coverage, and coverage.
-static void unpack_view(const prom_views *views, uint32_t dir, level *out)
+// ---- the frame
+
+#define FRAME_STEP (1u << (PROM_SIZES - 1)) // a pixel of the smallest size
+
+// Grows box (x0, y0, x1, y1) by what a view covers.
+static void add_covered(const prom_views *views, uint32_t dir, uint32_t box[4])
 {
     for (uint32_t y = 0; y < PROM_VIEW_PX; y++) {
         const uint8_t(*p)[4] = views->rgba + prom_view_start(dir) + (size_t)y * PROM_ATLAS_PX;
-        float *luminance = out->luminance + (size_t)y * PROM_VIEW_PX;
-        float *coverage = out->coverage + (size_t)y * PROM_VIEW_PX;
-        for (uint32_t x = 0; x < PROM_VIEW_PX; x++) {
+        uint32_t first = 0, last = PROM_VIEW_PX;
+        while (first < last && p[first][3] < 128) first++;
+        if (first == last) continue;
+        while (p[last - 1][3] < 128) last--;
+        if (first < box[0]) box[0] = first;
+        if (last > box[2]) box[2] = last;
+        if (y < box[1]) box[1] = y;
+        box[3] = y + 1;
+    }
+}
+
+static frame frame_of(const prom_views *truth, prom_comparison *const *others, size_t count,
+                      uint32_t dir)
+{
+    uint32_t low[2] = {PROM_VIEW_PX, PROM_VIEW_PX}, high[2] = {0, 0};
+    for (size_t i = 0; i <= count; i++) {
+        uint32_t box[4] = {PROM_VIEW_PX, PROM_VIEW_PX, 0, 0};
+        add_covered(i < count ? others[i]->views : truth, dir, box);
+        for (int k = 0; k < 2; k++) {
+            if (box[k] < low[k]) low[k] = box[k];
+            if (box[k + 2] > high[k]) high[k] = box[k + 2];
+        }
+    }
+    for (int k = 0; k < 2; k++) {
+        if (low[k] >= high[k]) low[k] = 0; // nothing at all
+        low[k] = low[k] / FRAME_STEP * FRAME_STEP;
+        high[k] = (high[k] + FRAME_STEP - 1) / FRAME_STEP * FRAME_STEP;
+        if (high[k] <= low[k]) high[k] = low[k] + FRAME_STEP;
+    }
+    return (frame){low[0], low[1], high[0] - low[0], high[1] - low[1]};
+}
+
+static uint32_t at_size(uint32_t extent, uint32_t size)
+{
+    return extent >> (PROM_SIZES - 1 - size);
+}
+
+static size_t pixels_of(const frame *f, uint32_t size)
+{
+    return (size_t)at_size(f->width, size) * at_size(f->height, size);
+}
+
+// ---- pictures
+
+// The frame's part of a view as linear luminance times coverage, and coverage.
+static void unpack_view(const prom_views *views, uint32_t dir, const frame *f, level *out)
+{
+    for (uint32_t y = 0; y < f->height; y++) {
+        const uint8_t(*p)[4] =
+            views->rgba + prom_view_start(dir) + (size_t)(y + f->y) * PROM_ATLAS_PX + f->x;
+        float *luminance = out->luminance + (size_t)y * f->width;
+        float *coverage = out->coverage + (size_t)y * f->width;
+        for (uint32_t x = 0; x < f->width; x++) {
             bool covered = p[x][3] >= 128;
             coverage[x] = covered ? 1.0f : 0.0f;
             luminance[x] = covered ? 0.2126f * prom_srgb8_to_linear(p[x][0]) +
@@ -96,60 +157,62 @@ static void unpack_view(const prom_views *views, uint32_t dir, level *out)
     }
 }
 
-static void halve_plane(const float *in, uint32_t side, float *out)
+static void halve_plane(const float *in, uint32_t width, uint32_t height, float *out)
 {
-    uint32_t half = side / 2;
-    for (uint32_t y = 0; y < half; y++) {
-        const float *a = in + (size_t)2 * y * side, *b = a + side;
-        for (uint32_t x = 0; x < half; x++)
-            out[y * half + x] = 0.25f * (a[2 * x] + a[2 * x + 1] + b[2 * x] + b[2 * x + 1]);
+    for (uint32_t y = 0; y < height / 2; y++, out += width / 2) {
+        const float *a = in + (size_t)2 * y * width, *b = a + width;
+        for (uint32_t x = 0; x < width / 2; x++)
+            out[x] = 0.25f * (a[2 * x] + a[2 * x + 1] + b[2 * x] + b[2 * x + 1]);
     }
 }
 
-// The picture over a background, encoded, in a window padded with the background.
-static void composite(const prom_measure *m, const level *in, uint32_t side, float background,
-                      float *grey)
+static void halve(const level *in, const frame *f, uint32_t size, level *out)
 {
-    uint32_t wide = side + 2 * PAD;
+    uint32_t width = at_size(f->width, size), height = at_size(f->height, size);
+    halve_plane(in->luminance, width, height, out->luminance);
+    halve_plane(in->coverage, width, height, out->coverage);
+}
+
+// The features of the picture over a background, encoded, padded with the background.
+static void take_features(const prom_measure *m, const level *in, uint32_t size,
+                          float background, scratch *s, float *features)
+{
+    uint32_t width = at_size(s->frame.width, size), wide = width + 2 * PAD;
+    uint32_t height = at_size(s->frame.height, size), high = height + 2 * PAD;
     float empty = m->encode[(int)(background * ENCODE_STEPS + 0.5f)];
-    for (size_t i = 0; i < (size_t)wide * wide; i++) grey[i] = empty;
-    for (uint32_t y = 0; y < side; y++) {
-        const float *l = in->luminance + (size_t)y * side, *c = in->coverage + (size_t)y * side;
-        float *g = grey + (size_t)(y + PAD) * wide + PAD;
-        for (uint32_t x = 0; x < side; x++) {
-            if (c[x] <= 0.0f) continue; // nothing there: half of a view and more
+    for (size_t i = 0; i < (size_t)wide * high; i++) s->grey[i] = empty;
+    for (uint32_t y = 0; y < height; y++) {
+        const float *l = in->luminance + (size_t)y * width;
+        const float *c = in->coverage + (size_t)y * width;
+        float *g = s->grey + (size_t)(y + PAD) * wide + PAD;
+        for (uint32_t x = 0; x < width; x++) {
+            if (c[x] <= 0.0f) continue;
             float v = l[x] + (1.0f - c[x]) * background;
             v = v < 0.0f ? 0.0f : v > 1.0f ? 1.0f : v;
             g[x] = m->encode[(int)(v * ENCODE_STEPS + 0.5f)];
         }
     }
+    prom_edge_blur_features(s->grey, wide, high, features, s->metric);
 }
 
-static void halve(const level *in, uint32_t side, level *out)
-{
-    halve_plane(in->luminance, side, out->luminance);
-    halve_plane(in->coverage, side, out->coverage);
-}
+// ---- measuring
 
 // The true object from one direction, at all sizes, into the scratch.
 static void take_truth(const prom_measure *m, const prom_views *views, uint32_t dir, scratch *s)
 {
-    unpack_view(views, dir, &s->covered[PROM_SIZES - 1]);
+    unpack_view(views, dir, &s->frame, &s->covered[PROM_SIZES - 1]);
     for (uint32_t size = PROM_SIZES; size-- > 0;) {
-        uint32_t side = size_px(size), wide = side + 2 * PAD;
         float *features = s->truth + m->features_of_size[size];
-        for (int b = 0; b < BACKGROUNDS; b++, features += 2 * window_pixels(size)) {
-            composite(m, &s->covered[size], side, m->background[b], s->grey);
-            prom_edge_blur_features(s->grey, wide, wide, features, s->metric);
-        }
-        if (size) halve(&s->covered[size], side, &s->covered[size - 1]);
+        for (int b = 0; b < BACKGROUNDS; b++, features += 2 * window_pixels(size))
+            take_features(m, &s->covered[size], size, m->background[b], s, features);
+        if (size) halve(&s->covered[size], &s->frame, size, &s->covered[size - 1]);
     }
 }
 
-static uint16_t covered_share(const level *largest)
+static uint16_t covered_share(const level *largest, size_t pixels)
 {
     double covered = 0;
-    for (size_t i = 0; i < PROM_VIEW_PIXELS; i++) covered += largest->coverage[i];
+    for (size_t i = 0; i < pixels; i++) covered += largest->coverage[i];
     double share = covered / (GLM_PI / 4.0 * PROM_VIEW_PIXELS);
     return (uint16_t)(65535.0 * (share > 1 ? 1 : share) + 0.5);
 }
@@ -163,17 +226,17 @@ static uint32_t count_gaps(const float *truth, const float *other, size_t count)
 
 static uint8_t compare_size(const prom_measure *m, uint32_t size, const level *in, scratch *s)
 {
-    uint32_t side = size_px(size), wide = side + 2 * PAD;
+    uint32_t wide = at_size(s->frame.width, size) + 2 * PAD;
+    uint32_t high = at_size(s->frame.height, size) + 2 * PAD;
     const float *truth = s->truth + m->features_of_size[size];
     const float *covered = s->covered[size].coverage;
-    const size_t window = window_pixels(size);
+    const size_t pixels = pixels_of(&s->frame, size), window = (size_t)wide * high;
     double area = 0, error = 0;
-    for (size_t i = 0; i < (size_t)side * side; i++)
+    for (size_t i = 0; i < pixels; i++)
         area += covered[i] > in->coverage[i] ? covered[i] : in->coverage[i];
-    for (int b = 0; b < BACKGROUNDS; b++, truth += 2 * window) {
-        composite(m, in, side, m->background[b], s->grey);
-        prom_edge_blur_features(s->grey, wide, wide, s->features, s->metric);
-        prom_edge_blur_error(truth, s->features, wide, wide, s->error);
+    for (int b = 0; b < BACKGROUNDS; b++, truth += 2 * window_pixels(size)) {
+        take_features(m, in, size, m->background[b], s, s->features);
+        prom_edge_blur_error(truth, s->features, wide, high, s->error);
         float sum = 0; // of one window: small enough for a float
         for (size_t i = 0; i < window; i++) sum += s->error[i];
         error += sum;
@@ -186,15 +249,14 @@ static uint8_t compare_size(const prom_measure *m, uint32_t size, const level *i
 static void compare(const prom_measure *m, uint32_t dir, prom_comparison *other, scratch *s)
 {
     int now = 0;
-    unpack_view(other->views, dir, &s->levels[now]);
+    unpack_view(other->views, dir, &s->frame, &s->levels[now]);
     for (uint32_t size = PROM_SIZES; size-- > 0;) {
         const level *in = &s->levels[now];
-        uint32_t side = size_px(size);
         other->accuracy[dir][size] = compare_size(m, size, in, s);
         if (size == GAP_SIZE)
             other->gaps[dir] =
-                count_gaps(s->covered[size].coverage, in->coverage, (size_t)side * side);
-        if (size) halve(in, side, &s->levels[!now]);
+                count_gaps(s->covered[size].coverage, in->coverage, pixels_of(&s->frame, size));
+        if (size) halve(in, &s->frame, size, &s->levels[!now]);
         now = !now;
     }
 }
@@ -204,8 +266,10 @@ void prom_measure_direction(prom_measure *m, unsigned thread, uint32_t dir,
                             prom_comparison *const *others, size_t count)
 {
     scratch *s = &m->scratches[thread];
+    s->frame = frame_of(truth, others, count, dir);
     take_truth(m, truth, dir, s);
-    *coverage = covered_share(&s->covered[PROM_SIZES - 1]);
+    *coverage =
+        covered_share(&s->covered[PROM_SIZES - 1], pixels_of(&s->frame, PROM_SIZES - 1));
     for (size_t i = 0; i < count; i++) compare(m, dir, others[i], s);
 }
 
