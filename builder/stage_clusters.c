@@ -147,12 +147,6 @@ static prom_status merge_row(prom_build_state *b, const uint32_t *clusters, size
     return prom_build_goes_on(b, error);
 }
 
-// The leaves below a cluster as they are drawn, and the key of that.
-typedef struct truth {
-    PROM_ARRAY(prom_draw_item) items;
-    uint64_t key;
-} truth;
-
 // The coarsest level that is as good as the object in views of px_per_unit.
 static uint32_t level_for(const prom_build_state *b, const prom_object *object,
                           float px_per_unit)
@@ -168,37 +162,40 @@ static uint32_t level_for(const prom_build_state *b, const prom_object *object,
     return level;
 }
 
-// All leaves below `node`, around `center` (world), with one id.
-static void collect_truth(const prom_build_state *b, uint32_t node, uint32_t id,
-                          const double center[3], float px_per_unit, truth *t)
+// All leaves below `node`, around `center` (world), with one id, to the subject's items and
+// key.
+static void collect_truth(prom_subject *s, uint32_t node, uint32_t id, const double center[3],
+                          float px_per_unit)
 {
+    const prom_build_state *b = s->build;
     const prom_tree_node *n = &b->tree.nodes.data[node];
     if (n->object == PROM_NONE) {
         for (uint32_t c = n->first_child; c < n->first_child + n->child_count; c++)
-            collect_truth(b, c, id, center, px_per_unit, t);
+            collect_truth(s, c, id, center, px_per_unit);
         return;
     }
     const prom_object *object = &b->objects.objects.data[n->object];
-    const prom_shape_build *s = &b->shapes[object->shape];
+    const prom_shape_build *shape = &b->shapes[object->shape];
     uint32_t level = level_for(b, object, px_per_unit);
-    prom_draw_item item = {.mesh = s->levels[level].device_id, .texture = PROM_NONE, .id = id};
+    prom_draw_item item = {
+        .mesh = shape->levels[level].device_id, .texture = PROM_NONE, .id = id};
     double origin[3];
     for (int a = 0; a < 3; a++) {
         origin[a] = object->placement.origin[a] - center[a];
         item.origin[a] = (float)origin[a];
     }
     memcpy(item.basis, object->placement.basis, sizeof item.basis);
-    prom_array_push(&t->items, item);
-    prom_key_add_placed(&t->key, s->leaf_key + id, origin, item.basis);
+    prom_array_push(&s->items, item);
+    prom_key_add_placed(&s->key, shape->leaf_key + id, origin, item.basis);
 }
 
-static void collect_children(const prom_build_state *b, const prom_subject *s, uint32_t node,
-                             truth *t)
+static void collect_children(prom_subject *s, uint32_t node)
 {
+    const prom_build_state *b = s->build;
     const prom_tree_node *n = &b->tree.nodes.data[node];
     float px_per_unit = PROM_VIEW_PX / (2.0f * b->prototypes[s->prototype].radius);
     for (uint32_t c = 0; c < n->child_count; c++)
-        collect_truth(b, n->first_child + c, c, b->model.center[node], px_per_unit, t);
+        collect_truth(s, n->first_child + c, c, b->model.center[node], px_per_unit);
 }
 
 static prom_status begin(prom_subject *s, uint32_t index, prom_error *error)
@@ -214,10 +211,8 @@ static prom_status begin(prom_subject *s, uint32_t index, prom_error *error)
         proto->flags |= PROM_PROTO_SURFACE;
     if (!cluster->mixed && cluster->layer == PROM_LAYER_BLENDED)
         proto->flags |= PROM_PROTO_BLENDED;
-    truth leaves = {.key = prom_key_of_cluster(b, index)};
-    collect_children(b, s, cluster->node, &leaves);
-    prom_array_finish(&leaves.items);
-    s->key = leaves.key;
+    s->key = prom_key_of_cluster(b, index);
+    collect_children(s, cluster->node);
     s->child_count = cluster->child_count;
     s->shares = prom_calloc(s->child_count, sizeof *s->shares);
     for (uint32_t l = 0; l < meshes->level_count; l++) {
@@ -233,19 +228,14 @@ static prom_status begin(prom_subject *s, uint32_t index, prom_error *error)
 
 static prom_status draw(prom_subject *s, uint32_t index, prom_error *error)
 {
-    prom_build_state *b = s->build;
-    const prom_tree_cluster *cluster = &b->tree.clusters.data[index];
-    truth leaves = {0};
-    collect_children(b, s, cluster->node, &leaves);
-    prom_baker_set_subject(b->baker, leaves.items.data, leaves.items.count);
+    const prom_tree_cluster *cluster = &s->build->tree.clusters.data[index];
     prom_subject_take_truth(s, true);
     prom_status status = PROM_OK;
     for (uint32_t l = 0; l < s->count && !status; l++)
         status = prom_subject_take_views(s, l, PROM_NONE, error);
     // The captures show the truth.
     if (!status && has_pictures(cluster) && cluster->layer == PROM_LAYER_OBJECT)
-        status = prom_subject_add_boxes(s, leaves.items.data, leaves.items.count, true, error);
-    prom_array_finish(&leaves.items);
+        status = prom_subject_add_boxes(s, true, error);
     return status;
 }
 

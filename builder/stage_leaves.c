@@ -53,6 +53,8 @@ static prom_status begin(prom_subject *s, uint32_t p, prom_error *error)
         level->device_id = prom_renderer_add_mesh(b->renderer, &level->mesh);
         if (level->device_id == PROM_NONE) return prom_build_device_full("meshes", error);
     }
+    prom_array_push(&s->items,
+                    prom_item_around(shape->levels[0].device_id, b->prototypes[p].center));
     return PROM_OK;
 }
 
@@ -62,21 +64,12 @@ static bool as_cheap_as_a_box(const prom_mesh *mesh)
     return mesh->index_count / 3 <= PROM_LEVEL_MIN_TRIANGLES && mesh->submesh_count == 1;
 }
 
-static prom_status add_boxes(prom_subject *s, uint32_t p, prom_error *error)
-{
-    prom_draw_item item = prom_item_around(s->build->shapes[p].levels[0].device_id,
-                                           s->build->prototypes[p].center);
-    return prom_subject_add_boxes(s, &item, 1, false, error);
-}
-
 static prom_status draw(prom_subject *s, uint32_t p, prom_error *error)
 {
     prom_build_state *b = s->build;
     const prom_shape_build *shape = &b->shapes[p];
     prom_layer layer = b->objects.shapes.data[p].layer;
     if (layer == PROM_LAYER_BACKDROP) return PROM_OK;
-    prom_draw_item item = prom_item_around(shape->levels[0].device_id, b->prototypes[p].center);
-    prom_baker_set_subject(b->baker, &item, 1);
     prom_subject_take_truth(s, false);
     for (uint32_t l = 1; l < shape->level_count; l++) {
         prom_status status = prom_subject_take_views(s, l, shape->levels[l].device_id, error);
@@ -85,7 +78,7 @@ static prom_status draw(prom_subject *s, uint32_t p, prom_error *error)
     if (layer != PROM_LAYER_OBJECT ||
         as_cheap_as_a_box(&shape->levels[shape->level_count - 1].mesh))
         return PROM_OK;
-    return add_boxes(s, p, error);
+    return prom_subject_add_boxes(s, false, error);
 }
 
 // The level that was to be as cheap as a box may have turned out to be of no use.
@@ -96,7 +89,7 @@ static prom_status amend(prom_subject *s, uint32_t p, prom_error *error)
     uint32_t cheapest = s->count - 1;
     while (!s->candidates[cheapest].kept) cheapest--; // the object itself is
     if (as_cheap_as_a_box(s->candidates[cheapest].mesh)) return PROM_OK;
-    return add_boxes(s, p, error);
+    return prom_subject_add_boxes(s, false, error);
 }
 
 static void settled(prom_subject *s, uint32_t p)

@@ -45,6 +45,7 @@ void prom_subject_take_truth(prom_subject *s, bool with_ids)
     }
     prom_views wanted = s->truth;
     if (!with_ids) wanted.ids = NULL;
+    prom_baker_set_subject(s->build->baker, s->items.data, s->items.count);
     prom_baker_take_views(s->build->baker, radius_of(s), &wanted);
     s->loop.count = PROM_DIRS;
 }
@@ -218,6 +219,7 @@ static void clear(prom_subject *s)
     prom_free(s->shares);
     s->shares = NULL;
     s->count = s->comparison_count = s->child_count = 0;
+    s->items.count = 0;
     s->first_box = PROM_CANDIDATES_MAX;
     s->loop = (prom_loop){0};
     s->known = false;
@@ -227,6 +229,7 @@ static void clear(prom_subject *s)
 static void finish_slot(prom_subject *s)
 {
     clear(s);
+    prom_array_finish(&s->items);
     prom_views_finish(&s->truth);
     for (int i = 0; i < PROM_CANDIDATES_MAX; i++) prom_views_finish(&s->candidates[i].views);
 }

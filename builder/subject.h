@@ -36,7 +36,8 @@ typedef struct prom_subject {
     uint64_t key;
     bool known; // settled by an earlier build
     prom_candidate candidates[PROM_CANDIDATES_MAX];
-    uint32_t count, first_box; // boxes, if there are any, stand from first_box on
+    uint32_t count, first_box;        // boxes, if there are any, stand from first_box on
+    PROM_ARRAY(prom_draw_item) items; // what shows the truth, relative to the bounds' centre
     prom_views truth;
     uint32_t child_count; // of a cluster
     uint16_t (*shares)[PROM_DIRS];
@@ -51,24 +52,23 @@ typedef struct prom_subject {
 // Adds a candidate; `rep` has kind, flags, level, error, switch_distance, texture PROM_NONE.
 prom_candidate *prom_subject_add(prom_subject *s, const prom_mesh *mesh,
                                  const prom_representation *rep, prom_admission admission);
-// Takes the truth's views of what is set in the baker.
+// Takes the truth's views: of the subject's items.
 void prom_subject_take_truth(prom_subject *s, bool with_ids);
 // Uploads candidate i for its views, and forgets it again; device_id other than PROM_NONE: it
 // is there already.
 prom_status prom_subject_take_views(prom_subject *s, uint32_t i, uint32_t device_id,
                                     prom_error *error);
-// Average-colour box and, if the prototype is to have one, textured box of what `items` show
-// (relative to the bounds' centre) as candidates with views. lit: bake the light in (clusters).
-prom_status prom_subject_add_boxes(prom_subject *s, const prom_draw_item *items, size_t count,
-                                   bool lit, prom_error *error);
+// Average-colour box and, if the prototype is to have one, textured box of what the items show,
+// as candidates with views. lit: bake the light in (clusters).
+prom_status prom_subject_add_boxes(prom_subject *s, bool lit, prom_error *error);
 // A mesh in its prototype's frame, moved so that the views look at the bounds' centre.
 prom_draw_item prom_item_around(uint32_t device_mesh, const float center[3]);
 
 // What a kind of subjects does. Both get the number of the subject in the run.
 typedef struct prom_subject_class {
     prom_unit_kind kind;
-    // Sets prototype and key, and adds the mesh candidates. Meshes that later subjects need are
-    // uploaded.
+    // Sets prototype, key and items, and adds the mesh candidates. Meshes that later subjects
+    // need are uploaded.
     prom_status (*begin)(prom_subject *s, uint32_t index, prom_error *error);
     // Takes truth and views; not called when an earlier build knows the results.
     prom_status (*draw)(prom_subject *s, uint32_t index, prom_error *error);

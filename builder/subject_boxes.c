@@ -58,8 +58,7 @@ static prom_status add_box(prom_subject *s, uint32_t kind, const uint8_t (*color
     return prom_subject_take_views(s, i, PROM_NONE, error);
 }
 
-prom_status prom_subject_add_boxes(prom_subject *s, const prom_draw_item *items, size_t count,
-                                   bool lit, prom_error *error)
+prom_status prom_subject_add_boxes(prom_subject *s, bool lit, prom_error *error)
 {
     prom_build_state *b = s->build;
     const prom_prototype *proto = &b->prototypes[s->prototype];
@@ -68,7 +67,7 @@ prom_status prom_subject_add_boxes(prom_subject *s, const prom_draw_item *items,
     float thick[3]; // a flat object's box keeps a little depth
     for (int a = 0; a < 3; a++) thick[a] = fmaxf(proto->half[a], 1e-3f * proto->radius);
     uint8_t *color = prom_alloc(CAPTURE_BYTES, 1), *normals = NULL;
-    prom_baker_set_subject(b->baker, items, count);
+    prom_baker_set_subject(b->baker, s->items.data, s->items.count);
     prom_baker_take_faces(b->baker, thick, lit ? PROM_OUTPUT_LIT : PROM_OUTPUT_ALBEDO,
                           CAPTURE_PX, color);
     if (textured && !lit) {
