@@ -5,7 +5,6 @@
 #include "metaobj/base/log.h"
 
 #include <stdio.h>
-#include <unistd.h>
 
 typedef struct loop {
     prom_frame_step step;
@@ -15,12 +14,9 @@ typedef struct loop {
 
 static double memory_mb(void)
 {
-    FILE *file = fopen("/proc/self/statm", "r");
-    if (!file) return 0;
-    unsigned long long all, resident;
-    bool good = fscanf(file, "%llu %llu", &all, &resident) == 2;
-    fclose(file);
-    return good ? (double)resident * (double)sysconf(_SC_PAGESIZE) / (1 << 20) : 0;
+    uint64_t mapped, resident;
+    prom_memory_use(&mapped, &resident);
+    return (double)resident / (1 << 20);
 }
 
 static double path_time(const prom_path *path, uint64_t frame)

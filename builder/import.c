@@ -47,14 +47,9 @@ static void limit_memory(uint64_t bytes)
 {
 #ifndef PROM_SANITIZE
     // The child starts with a copy of what the parent has mapped; that does not count.
-    unsigned long long pages = 0;
-    FILE *statm = fopen("/proc/self/statm", "r");
-    if (statm) {
-        if (fscanf(statm, "%llu", &pages) != 1) pages = 0;
-        fclose(statm);
-    }
-    uint64_t total = bytes + pages * (uint64_t)sysconf(_SC_PAGESIZE);
-    limit(RLIMIT_AS, total, total);
+    uint64_t mapped, resident;
+    prom_memory_use(&mapped, &resident);
+    limit(RLIMIT_AS, bytes + mapped, bytes + mapped);
 #else
     (void)bytes;
 #endif

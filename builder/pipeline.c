@@ -14,13 +14,9 @@
 
 uint64_t prom_build_spare_memory(const prom_build_state *b, uint64_t least)
 {
-    unsigned long long pages = 0, resident = 0;
-    if (!b->options->memory_mb) return UINT64_MAX;
-    FILE *f = fopen("/proc/self/statm", "r");
-    if (f && fscanf(f, "%llu %llu", &pages, &resident) != 2) resident = 0;
-    if (f) fclose(f);
-    uint64_t limit = (uint64_t)b->options->memory_mb << 20;
-    uint64_t used = resident * (uint64_t)sysconf(_SC_PAGESIZE);
+    uint64_t mapped, used, limit = (uint64_t)b->options->memory_mb << 20;
+    if (!limit) return UINT64_MAX;
+    prom_memory_use(&mapped, &used);
     return used + least < limit ? limit - used : least;
 }
 

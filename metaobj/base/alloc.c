@@ -4,6 +4,7 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #define BLOCK_BYTES ((size_t)1 << 18)
 
@@ -110,4 +111,15 @@ void *prom_array_grow_(void *data, size_t *capacity, size_t needed, size_t size)
     if (grown < needed) grown = needed;
     *capacity = grown;
     return prom_realloc(data, grown, size);
+}
+
+void prom_memory_use(uint64_t *mapped, uint64_t *resident)
+{
+    unsigned long long all = 0, there = 0;
+    FILE *f = fopen("/proc/self/statm", "r");
+    if (f && fscanf(f, "%llu %llu", &all, &there) != 2) all = there = 0;
+    if (f) fclose(f);
+    const uint64_t page = (uint64_t)sysconf(_SC_PAGESIZE);
+    *mapped = all * page;
+    *resident = there * page;
 }

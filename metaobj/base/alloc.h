@@ -6,6 +6,7 @@
 #define PROM_METAOBJ_BASE_ALLOC_H
 
 #include <stddef.h>
+#include <stdint.h>
 #include <string.h>
 
 // count x size bytes, aligned for every type; aborts on overflow. Zero bytes give a valid
@@ -17,6 +18,10 @@ void prom_free(void *pointer); // NULL is allowed
 char *prom_strdup(const char *text);
 // printf into a new string; free it with prom_free.
 char *prom_format(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+// Bytes of address space that this process has mapped, and of them in memory now; 0 and 0 where
+// the system does not tell.
+void prom_memory_use(uint64_t *mapped, uint64_t *resident);
 
 // An arena hands out memory that is freed all at once.
 typedef struct prom_arena {
