@@ -83,23 +83,11 @@ static error_t parse(int key, char *text, struct argp_state *state)
         o->loop.check_accuracy =
             (uint32_t)prom_option_whole(state, "--check-accuracy", text, 0, 100000);
         break;
-    case ARGP_KEY_ARG:
-        prom_option_argument(state, text, &o->model);
-        break;
-    case ARGP_KEY_END:
-        prom_option_require(state, "the model (a .prom file)", o->model);
-        break;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return prom_option_model(key, text, state, &o->model);
     }
     return 0;
 }
-
-static const struct argp_child children[] = {
-    {&prom_argp_log, 0, NULL, -1},
-    {&prom_argp_view, 0, "View:", 2},
-    {0},
-};
 
 static const struct argp argp = {
     .options = options,
@@ -110,7 +98,7 @@ static const struct argp argp = {
         "The selector is `greedy` and the budget 33 ms unless given. A frame's time runs from "
         "its start to the finished image; a frame over the budget is a miss. Frames that are "
         "compared with full detail are drawn again between the measured ones.",
-    .children = children,
+    .children = prom_view_children,
 };
 
 static bool heeds_budget(const char *selector)

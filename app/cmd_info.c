@@ -27,14 +27,8 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case KEY_JSON:
         o->json = true;
         break;
-    case ARGP_KEY_ARG:
-        prom_option_argument(state, text, &o->model);
-        break;
-    case ARGP_KEY_END:
-        prom_option_require(state, "the model (a .prom file)", o->model);
-        break;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return prom_option_model(key, text, state, &o->model);
     }
     return 0;
 }

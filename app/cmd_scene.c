@@ -13,13 +13,6 @@
 
 static const struct argp_child children[] = {{&prom_argp_log, 0, NULL, -1}, {0}};
 
-// ---- city
-
-typedef struct city_options {
-    prom_city_options city;
-    const char *output, *path;
-} city_options;
-
 enum {
     KEY_SEED = 0x1000,
     KEY_SIZE,
@@ -32,6 +25,44 @@ enum {
     KEY_ROOFLESS,
     KEY_FLIGHT,
 };
+
+// ---- what a generated scene takes
+
+typedef struct generated {
+    const char *output, *path;
+    uint64_t seed;
+} generated;
+
+static error_t parse_generated(generated *o, int key, char *text, struct argp_state *state)
+{
+    switch (key) {
+    case 'o':
+        o->output = text;
+        break;
+    case KEY_PATH:
+        o->path = text;
+        break;
+    case KEY_SEED:
+        o->seed = prom_option_whole(state, "--seed", text, 0, UINT64_MAX);
+        break;
+    case ARGP_KEY_ARG:
+        argp_error(state, "`%s` is one argument too many", text);
+        break;
+    case ARGP_KEY_END:
+        prom_option_require(state, "--output", o->output);
+        break;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+    return 0;
+}
+
+// ---- city
+
+typedef struct city_options {
+    generated common;
+    prom_city_options city;
+} city_options;
 
 static const struct argp_option city_table[] = {
     {"output", 'o', "FILE", 0, "The scene to write (X.glb)", 0},
@@ -49,17 +80,8 @@ static error_t parse_city(int key, char *text, struct argp_state *state)
 {
     city_options *o = state->input;
     switch (key) {
-    case 'o':
-        o->output = text;
-        break;
-    case KEY_PATH:
-        o->path = text;
-        break;
     case KEY_FLIGHT:
         o->city.flight_file = text;
-        break;
-    case KEY_SEED:
-        o->city.seed = prom_option_whole(state, "--seed", text, 0, UINT64_MAX);
         break;
     case KEY_SIZE:
         o->city.blocks = (uint32_t)prom_option_whole(state, "--size", text, 1, 256);
@@ -70,14 +92,8 @@ static error_t parse_city(int key, char *text, struct argp_state *state)
     case KEY_STYLES:
         o->city.styles = (uint32_t)prom_option_whole(state, "--styles", text, 1, 10000);
         break;
-    case ARGP_KEY_ARG:
-        argp_error(state, "`%s` is one argument too many", text);
-        break;
-    case ARGP_KEY_END:
-        prom_option_require(state, "--output", o->output);
-        break;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return parse_generated(&o->common, key, text, state);
     }
     return 0;
 }
@@ -92,15 +108,18 @@ static const struct argp city_argp = {
 
 static prom_status run_city(int argc, char **argv, prom_error *error)
 {
-    city_options o = {.city = {.seed = 1}};
+    city_options o = {.common = {.seed = 1}};
     argp_parse(&city_argp, argc, argv, 0, NULL, &o);
-    prom_command_files files = {.outputs = {&o.output, &o.path, &o.city.flight_file}};
+    o.city.seed = o.common.seed;
+    prom_command_files files = {
+        .outputs = {&o.common.output, &o.common.path, &o.city.flight_file}};
     prom_status status = prom_outputs_check(&files, error);
     uint64_t triangles = 0;
-    if (!status) status = prom_city_write(o.output, o.path, &o.city, &triangles, error);
+    if (!status)
+        status = prom_city_write(o.common.output, o.common.path, &o.city, &triangles, error);
     if (status) return status;
-    printf("%s: %" PRIu64 " triangles\n", o.output, triangles);
-    if (o.path) printf("%s: a walk through it\n", o.path);
+    printf("%s: %" PRIu64 " triangles\n", o.common.output, triangles);
+    if (o.common.path) printf("%s: a walk through it\n", o.common.path);
     if (o.city.flight_file) printf("%s: a flight above it\n", o.city.flight_file);
     return PROM_OK;
 }
@@ -108,8 +127,8 @@ static prom_status run_city(int argc, char **argv, prom_error *error)
 // ---- gallery
 
 typedef struct gallery_options {
+    generated common;
     prom_gallery_options gallery;
-    const char *output, *path;
 } gallery_options;
 
 static const struct argp_option gallery_table[] = {
@@ -129,15 +148,6 @@ static error_t parse_gallery(int key, char *text, struct argp_state *state)
 {
     gallery_options *o = state->input;
     switch (key) {
-    case 'o':
-        o->output = text;
-        break;
-    case KEY_PATH:
-        o->path = text;
-        break;
-    case KEY_SEED:
-        o->gallery.seed = prom_option_whole(state, "--seed", text, 0, UINT64_MAX);
-        break;
     case KEY_ROOMS:
         o->gallery.rooms = (uint32_t)prom_option_whole(
             state, "--rooms", text, PROM_GALLERY_ROOMS_MIN, PROM_GALLERY_ROOMS_MAX);
@@ -149,14 +159,8 @@ static error_t parse_gallery(int key, char *text, struct argp_state *state)
     case KEY_ROOFLESS:
         o->gallery.roofless = true;
         break;
-    case ARGP_KEY_ARG:
-        argp_error(state, "`%s` is one argument too many", text);
-        break;
-    case ARGP_KEY_END:
-        prom_option_require(state, "--output", o->output);
-        break;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return parse_generated(&o->common, key, text, state);
     }
     return 0;
 }
@@ -173,15 +177,19 @@ static const struct argp gallery_argp = {
 
 static prom_status run_gallery(int argc, char **argv, prom_error *error)
 {
-    gallery_options o = {.gallery = {.seed = 1}};
+    gallery_options o = {.common = {.seed = 1}};
     argp_parse(&gallery_argp, argc, argv, 0, NULL, &o);
-    prom_command_files files = {.outputs = {&o.output, &o.path}};
+    o.gallery.seed = o.common.seed;
+    prom_command_files files = {.outputs = {&o.common.output, &o.common.path}};
     prom_status status = prom_outputs_check(&files, error);
     prom_gallery_facts facts = {0};
-    if (!status) status = prom_gallery_write(o.output, o.path, &o.gallery, &facts, error);
+    if (!status)
+        status = prom_gallery_write(o.common.output, o.common.path, &o.gallery, &facts, error);
     if (status) return status;
-    printf("%s: %" PRIu64 " triangles in %u rooms\n", o.output, facts.triangles, facts.rooms);
-    if (o.path) printf("%s: a walk of %u frames through it\n", o.path, facts.walk_keys);
+    printf("%s: %" PRIu64 " triangles in %u rooms\n", o.common.output, facts.triangles,
+           facts.rooms);
+    if (o.common.path)
+        printf("%s: a walk of %u frames through it\n", o.common.path, facts.walk_keys);
     return PROM_OK;
 }
 

@@ -71,25 +71,16 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case KEY_WIREFRAME:
         o->draw.wireframe = true;
         break;
-    case ARGP_KEY_ARG:
-        prom_option_argument(state, text, &o->model);
-        break;
     case ARGP_KEY_END:
-        prom_option_require(state, "the model (a .prom file)", o->model);
+        prom_option_model(key, text, state, &o->model);
         prom_option_require(state, "--output", o->output);
         check_camera(o, state);
         break;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return prom_option_model(key, text, state, &o->model);
     }
     return 0;
 }
-
-static const struct argp_child children[] = {
-    {&prom_argp_log, 0, NULL, -1},
-    {&prom_argp_view, 0, "View:", 2},
-    {0},
-};
 
 static const struct argp argp = {
     .options = options,
@@ -97,7 +88,7 @@ static const struct argp argp = {
     .args_doc = "X.prom",
     .doc = "Draw one picture of a model.\v"
            "With --budget-ms the selector is `greedy` unless given, without it `full`.",
-    .children = children,
+    .children = prom_view_children,
 };
 
 static prom_status check_frame(const shot_options *o, const prom_path *path, prom_error *error)

@@ -51,23 +51,11 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case KEY_SHOT:
         o->shot = text;
         break;
-    case ARGP_KEY_ARG:
-        prom_option_argument(state, text, &o->model);
-        break;
-    case ARGP_KEY_END:
-        prom_option_require(state, "the model (a .prom file)", o->model);
-        break;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return prom_option_model(key, text, state, &o->model);
     }
     return 0;
 }
-
-static const struct argp_child children[] = {
-    {&prom_argp_log, 0, NULL, -1},
-    {&prom_argp_view, 0, "View:", 2},
-    {0},
-};
 
 static const struct argp argp = {
     .options = options,
@@ -87,7 +75,7 @@ static const struct argp argp = {
            "  Esc           end\n\n"
            "The selector is `greedy` and the budget 33 ms unless given. The walk starts at the "
            "path's first place.",
-    .children = children,
+    .children = prom_view_children,
 };
 
 static prom_context *open_window(void *user, uint32_t size_px[2], prom_error *error)

@@ -73,6 +73,18 @@ void prom_option_argument(const struct argp_state *state, const char *text, cons
     *slot = text;
 }
 
+error_t prom_option_model(int key, char *text, const struct argp_state *state,
+                          const char **model)
+{
+    if (key == ARGP_KEY_ARG)
+        prom_option_argument(state, text, model);
+    else if (key == ARGP_KEY_END)
+        prom_option_require(state, "the model (a .prom file)", *model);
+    else
+        return ARGP_ERR_UNKNOWN;
+    return 0;
+}
+
 void prom_option_require(const struct argp_state *state, const char *what, const char *value)
 {
     if (!value || !*value) argp_error(state, "%s is missing", what);
@@ -180,3 +192,9 @@ static error_t parse_view(int key, char *text, struct argp_state *state)
 }
 
 const struct argp prom_argp_view = {.options = view_options, .parser = parse_view};
+
+const struct argp_child prom_view_children[] = {
+    {&prom_argp_log, 0, NULL, -1},
+    {&prom_argp_view, 0, "View:", 2},
+    {0},
+};

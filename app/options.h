@@ -24,6 +24,10 @@ void prom_option_resolution(const struct argp_state *state, const char *text, ui
 
 // Stores a command's only argument; a second one is a usage error.
 void prom_option_argument(const struct argp_state *state, const char *text, const char **slot);
+// What is left of a command whose only argument is a model: takes it, and requires it at the
+// end.
+error_t prom_option_model(int key, char *text, const struct argp_state *state,
+                          const char **model);
 // A usage error unless the argument or option has been given; `what` as in "the model's file".
 void prom_option_require(const struct argp_state *state, const char *what, const char *value);
 
@@ -46,5 +50,8 @@ const char *prom_view_path_file(const prom_view_options *view);
 
 extern const prom_view_options prom_view_options_default;
 extern const struct argp prom_argp_view;
+// The children of such a command: the log's and the view's options; the view's input is the
+// second.
+extern const struct argp_child prom_view_children[];
 
 #endif
