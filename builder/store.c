@@ -55,25 +55,19 @@ static void close_database(prom_store *s)
 #define TEXT_(x) #x
 #define TEXT(x) TEXT_(x)
 
+#define MARKS                                                                                  \
+    "PRAGMA application_id=" TEXT(APPLICATION_ID) "; PRAGMA user_version=" TEXT(FORMAT) ";"
 // Losing the last units with the power is no harm, so nothing is synced; the rollback journal
 // covers a killed process. The table comes with its marks, or not at all.
 static const char schema[] =
     "PRAGMA page_size=16384; PRAGMA auto_vacuum=FULL; PRAGMA journal_mode=DELETE;"
-    "PRAGMA synchronous=OFF; PRAGMA locking_mode=EXCLUSIVE;"
-    "PRAGMA temp_store=MEMORY;"
-    "BEGIN IMMEDIATE;"
-    "PRAGMA application_id=" TEXT(
-        APPLICATION_ID) ";"
-                        "PRAGMA user_version=" TEXT(
-                            FORMAT) ";"
-                                    "CREATE TABLE IF NOT EXISTS unit(id INTEGER PRIMARY KEY, "
-                                    "kind INTEGER NOT NULL,"
-                                    " key INTEGER NOT NULL, bytes INTEGER NOT NULL, checksum "
-                                    "INTEGER NOT NULL,"
-                                    " data BLOB NOT NULL, UNIQUE(kind, key)) STRICT;"
-                                    "COMMIT;"
-                                    "CREATE TEMP TABLE used(kind INTEGER, key INTEGER, PRIMARY "
-                                    "KEY(kind, key)) WITHOUT ROWID;";
+    "PRAGMA synchronous=OFF; PRAGMA locking_mode=EXCLUSIVE; PRAGMA temp_store=MEMORY;"
+    "BEGIN IMMEDIATE;" MARKS
+    "CREATE TABLE IF NOT EXISTS unit(id INTEGER PRIMARY KEY, kind INTEGER NOT NULL,"
+    " key INTEGER NOT NULL, bytes INTEGER NOT NULL, checksum INTEGER NOT NULL,"
+    " data BLOB NOT NULL, UNIQUE(kind, key)) STRICT;"
+    "COMMIT;"
+    "CREATE TEMP TABLE used(kind INTEGER, key INTEGER, PRIMARY KEY(kind, key)) WITHOUT ROWID;";
 
 static bool read_number(sqlite3 *db, const char *sql, int64_t *value)
 {
