@@ -14,6 +14,11 @@ typedef struct prom_cut_entry {
     uint32_t fade_from; // representation that it replaces, or PROM_NONE
     float fade;         // 1 when the change is complete
     float depth;        // distance from the eye to the node's nearest point, for the draw order
+    // As predicted when the entry was chosen:
+    float footprint_px; // pixels of the viewport that the node would cover by itself
+    float visible_px;   // those of them that are not hidden behind other nodes
+    float accuracy;     // of the representation in this view: benefit / visible_px
+    float cost_ms;
 } prom_cut_entry;
 
 // Exactly one entry on every root-to-leaf path whose leaf is in the frustum.

@@ -258,7 +258,7 @@ static inline prom_cost_model random_cost(uint64_t *seed)
                             .draw_ms = random_between(seed, 0, 2e-3f),
                             .vertex_ms = random_between(seed, 0, 1e-4f),
                             .triangle_ms = random_between(seed, 1e-5f, 2e-4f),
-                            .overdraw = random_between(seed, 1, 2)};
+                            .hidden_pixel_ms = random_between(seed, 0, 1e-6f)};
     for (int k = 0; k < PROM_SHADE_COUNT; k++)
         cost.pixel_ms[k] = random_between(seed, 0, 2e-5f);
     return cost;

@@ -310,7 +310,7 @@ static void broken_profiles_are_refused(void **state)
         write_text(broken, bytes);
         prom_cost_model other = {0};
         if (prom_cost_load(path, &other, &error) == PROM_OK)
-            assert_true(other.overdraw >= 1 && other.margin >= 0 && other.margin < 1 &&
+            assert_true(other.hidden_pixel_ms >= 0 && other.margin >= 0 && other.margin < 1 &&
                         other.fixed_ms >= 0 && isfinite(other.triangle_ms));
         prom_free(broken);
     }
@@ -318,8 +318,8 @@ static void broken_profiles_are_refused(void **state)
     const char *const wrong[][2] = {
         {"\"fixed_ms\": ", "\"fixed_ms\": -"},
         {"\"margin\": 0.1", "\"margin\": 1.5"},
-        {"\"overdraw\": ", "\"overdraw\": 0.0"},
-        {"\"version\": 1", "\"version\": 2"},
+        {"\"hidden_pixel_ms\": ", "\"hidden_pixel_ms\": -"},
+        {"\"version\": 2", "\"version\": 1"},
         {"promenade-cost", "other-cost"},
         {"\"draw_ms\": ", "\"draw_ms\": \"x\", \"y\": "},
         {"\"masked\"", "\"mask\""},

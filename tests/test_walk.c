@@ -249,7 +249,7 @@ static void write_profile(void)
     prom_cost_model model = {.fixed_ms = 0.1,
                              .draw_ms = 1e-3,
                              .triangle_ms = 1e-4,
-                             .overdraw = 1,
+                             .hidden_pixel_ms = 1e-7,
                              .margin = 0.2,
                              .sample_count = 1};
     for (int i = 0; i < PROM_SHADE_COUNT; i++) model.pixel_ms[i] = 1e-5;

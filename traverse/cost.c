@@ -10,6 +10,9 @@
 #include <string.h>
 
 enum { COLUMNS = 4 + PROM_SHADE_COUNT };
+// What a hidden pixel costs against a shaded one. Measured on llvmpipe with six full layers:
+// 7.0 ms, where one takes 3.0.
+#define HIDDEN_SHARE 0.27
 #define DEFAULT_MARGIN 0.1
 
 static void columns_of(const prom_cost_features *f, double out[COLUMNS])
@@ -258,9 +261,10 @@ prom_status prom_cost_fit(const prom_cost_sample *samples, size_t count, prom_co
                          "%zu calibration samples are too few to fit %zu cost coefficients; "
                          "calibrate with more effort",
                          count, columns);
-    *model = (prom_cost_model){.overdraw = 1.0, .margin = DEFAULT_MARGIN};
+    *model = (prom_cost_model){.margin = DEFAULT_MARGIN};
     model->sample_count = count > UINT32_MAX ? UINT32_MAX : (uint32_t)count;
     solve_into(&e, model);
+    model->hidden_pixel_ms = HIDDEN_SHARE * model->pixel_ms[PROM_SHADE_TEXTURED];
     measure_errors(samples, count, columns, model);
     return PROM_OK;
 }
@@ -277,10 +281,10 @@ double prom_cost_predict(const prom_cost_model *model, const prom_cost_features 
 }
 
 double prom_cost_of_rep(const prom_cost_model *model, const prom_representation *rep,
-                        double pixels)
+                        double shaded_px, double hidden_px)
 {
     assert(rep->shading < PROM_SHADE_COUNT);
     return model->draw_ms * rep->draws + model->vertex_ms * rep->vertices +
-           model->triangle_ms * rep->triangles +
-           model->pixel_ms[rep->shading] * pixels * model->overdraw;
+           model->triangle_ms * rep->triangles + model->pixel_ms[rep->shading] * shaded_px +
+           model->hidden_pixel_ms * hidden_px;
 }

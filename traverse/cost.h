@@ -8,11 +8,10 @@
 
 typedef struct prom_cost_model {
     double fixed_ms, draw_ms, vertex_ms, triangle_ms, pixel_ms[PROM_SHADE_COUNT];
-    double overdraw;    // factor on all pixels, >= 1; nothing measures it yet: 1. What lies
-                        // behind other things is counted by traverse/evaluate.c
-    double mean_error;  // of the fit: mean |predicted/actual - 1|
-    double worst_under; // greatest actual/predicted - 1
-    double margin;      // part of the budget kept back for noise, from repeats at calibration
+    double hidden_pixel_ms; // a pixel drawn behind what is there already (early z)
+    double mean_error;      // of the fit: mean |predicted/actual - 1|
+    double worst_under;     // greatest actual/predicted - 1
+    double margin; // part of the budget kept back for noise, from repeats at calibration
     uint32_t sample_count;
     uint32_t width, height; // of the pictures that were timed; 0: not known
     char renderer[128];
@@ -21,14 +20,15 @@ typedef struct prom_cost_model {
 // Non-negative least squares with 1/T weights (relative errors). Fails with fewer samples than
 // coefficients (of features that occur at all) or a sample that is not finite. Sets every
 // field: errors are measured on samples that the fit had not seen where there are enough;
-// shading kinds without samples cost what textured pixels do; overdraw 1, margin 0.1, no size
-// and an empty renderer are for the caller to replace.
+// shading kinds without samples cost what textured pixels do; margin 0.1, no size and an empty
+// renderer are for the caller to replace.
 prom_status prom_cost_fit(const prom_cost_sample *samples, size_t count, prom_cost_model *model,
                           prom_error *error);
 double prom_cost_predict(const prom_cost_model *model, const prom_cost_features *features);
-// A representation that covers `pixels` pixels in this view (overdraw applied inside).
+// A representation that in this view shades `shaded_px` pixels and covers `hidden_px` more
+// behind other things.
 double prom_cost_of_rep(const prom_cost_model *model, const prom_representation *rep,
-                        double pixels);
+                        double shaded_px, double hidden_px);
 
 // JSON profile files (docs/FORMAT.md). Saving replaces the file at once or not at all. Loading
 // checks every key and number; on failure *model stays as it was. Profiles without a size load.

@@ -14,9 +14,8 @@
 #include <unistd.h>
 
 #define FORMAT "promenade-cost-profile"
-#define VERSION 1
+#define VERSION 2
 #define FILE_BYTES_MAX 65536
-#define OVERDRAW_MAX 64.0
 #define SIDE_MAX 65536
 
 static const char *const shading_keys[PROM_SHADE_COUNT] = {"plain", "textured", "masked",
@@ -33,10 +32,9 @@ typedef struct field {
 #name, offsetof(prom_cost_model, name), least, most                                    \
     }
 static const field fields[] = {
-    FIELD(fixed_ms, 0.0, 1e6),          FIELD(draw_ms, 0.0, 1e6),
-    FIELD(vertex_ms, 0.0, 1e6),         FIELD(triangle_ms, 0.0, 1e6),
-    FIELD(overdraw, 1.0, OVERDRAW_MAX), FIELD(mean_error, 0.0, 1e6),
-    FIELD(worst_under, 0.0, 1e6),       FIELD(margin, 0.0, 0.9),
+    FIELD(fixed_ms, 0.0, 1e6),    FIELD(draw_ms, 0.0, 1e6),         FIELD(vertex_ms, 0.0, 1e6),
+    FIELD(triangle_ms, 0.0, 1e6), FIELD(hidden_pixel_ms, 0.0, 1e6), FIELD(mean_error, 0.0, 1e6),
+    FIELD(worst_under, 0.0, 1e6), FIELD(margin, 0.0, 0.9),
 };
 enum { FIELD_COUNT = sizeof fields / sizeof *fields };
 

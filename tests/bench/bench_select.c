@@ -62,7 +62,7 @@ static void time_selectors(uint32_t leaves, int frames)
     printf("random tree: %u nodes, %u prototypes, %u representations\n", m.tree_count,
            m.prototype_count, m.rep_count);
     prom_cost_model cost = {
-        .fixed_ms = 1, .draw_ms = 5e-4, .triangle_ms = 1.2e-4, .overdraw = 1};
+        .fixed_ms = 1, .draw_ms = 5e-4, .triangle_ms = 1.2e-4, .hidden_pixel_ms = 5e-7};
     for (int k = 0; k < PROM_SHADE_COUNT; k++) cost.pixel_ms[k] = 4e-6;
     prom_selector *selectors[8];
     prom_cut cuts[8] = {0};
