@@ -288,3 +288,10 @@ void prom_draw_list_prepare(prom_draw_list *list)
     gpu_buffer_stream(&list->command_buffer, list->commands.data,
                       list->commands.count * sizeof *list->commands.data);
 }
+
+bool prom_draw_list_has_blended(const prom_draw_list *list)
+{
+    // The phase that is drawn last.
+    return list->runs.count &&
+           list->runs.data[list->runs.count - 1].state.phase == PHASE_BLENDED;
+}

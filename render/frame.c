@@ -112,6 +112,7 @@ void prom_renderer_draw_frame(prom_renderer *renderer, prom_draw_list *list,
     prom_pass pass = {.width = camera->width,
                       .height = camera->height,
                       .output = options->output,
+                      .ids = options->ids,
                       .wireframe = options->wireframe};
     prom_camera_projection(camera, pass.projection);
     prom_target_clear(target, prom_sky_color);

@@ -57,6 +57,13 @@ typedef enum prom_output {
     PROM_OUTPUT_COUNT
 } prom_output;
 
+// Whose ids a target with ids gets.
+typedef enum prom_ids {
+    PROM_IDS_ALL = 0, // blended over opaque
+    PROM_IDS_OPAQUE,  // what is blended writes none: what it covers can be seen through it
+    PROM_IDS_BLENDED, // only what is blended, where nothing opaque is before it
+} prom_ids;
+
 typedef struct prom_draw_item {
     uint32_t mesh;
     uint32_t texture; // impostor pictures, or PROM_NONE
@@ -78,11 +85,14 @@ void prom_draw_list_add(prom_draw_list *list, const prom_draw_item *item);
 // Sorts and uploads the commands: opaque front to back in depth slices, grouped by state within
 // a slice; then the background; then blended back to front. Call once before submitting.
 void prom_draw_list_prepare(prom_draw_list *list);
+// Whether a prepared list has something blended, the background aside.
+bool prom_draw_list_has_blended(const prom_draw_list *list);
 
 typedef struct prom_pass {
     mat4 projection;              // clip from eye-relative world; reverse z
     uint32_t x, y, width, height; // viewport in the target, from the bottom left
     prom_output output;
+    prom_ids ids;
     bool wireframe;
 } prom_pass;
 
@@ -107,6 +117,7 @@ void prom_camera_projection(const prom_camera *camera, mat4 projection);
 
 typedef struct prom_frame_options {
     prom_output output; // PROM_OUTPUT_TINT: colour by representation kind
+    prom_ids ids;
     bool wireframe;
     bool no_background;
 } prom_frame_options;

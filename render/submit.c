@@ -103,7 +103,7 @@ static void draw_blended(const submission *s, size_t first, size_t last, bool ba
         glBlendFunc(GL_ONE, GL_ZERO);
         glBindFramebuffer(GL_FRAMEBUFFER, s->target->framebuffer);
     }
-    bool needs_ids = s->target->has_ids && !background;
+    bool needs_ids = s->target->has_ids && !background && s->pass->ids != PROM_IDS_OPAQUE;
     if (!blends || needs_ids) {
         glColorMaski(0, !blends, !blends, !blends, !blends && !background);
         glColorMaski(1, needs_ids, needs_ids, needs_ids, needs_ids);
@@ -114,8 +114,9 @@ static void draw_blended(const submission *s, size_t first, size_t last, bool ba
 
 static void draw_opaque(const submission *s, size_t first, size_t last, bool background)
 {
+    bool ids = !background && s->pass->ids != PROM_IDS_BLENDED;
     glColorMaski(0, GL_TRUE, GL_TRUE, GL_TRUE, !background);
-    glColorMaski(1, !background, !background, !background, !background);
+    glColorMaski(1, ids, ids, ids, ids);
     for (size_t i = first; i < last; i++)
         draw_run_as(s, &s->list->runs.data[i], s->list->runs.data[i].state.pipeline);
 }
