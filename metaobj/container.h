@@ -10,6 +10,7 @@
 #include "metaobj/mesh.h"
 #include "metaobj/model.h"
 #include "metaobj/texture.h"
+#include "metaobj/view_cells.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -45,8 +46,19 @@ prom_status prom_writer_add_stage(prom_writer *writer, const char *name, uint64_
 // those of model->meshes and model->textures. `model` must pass prom_model_check.
 prom_status prom_writer_put_model(prom_writer *writer, const prom_model *model,
                                   prom_error *error);
+// The model's view cells, after the model, in the place of those that are there; without a cell
+// none stay. `cells` must pass prom_view_cells_check.
+prom_status prom_writer_put_view_cells(prom_writer *writer, const prom_view_cells *cells,
+                                       prom_error *error);
 // Syncs, closes and renames PATH.part to PATH.
 prom_status prom_writer_finish(prom_writer *writer, prom_error *error);
+
+// Starts PATH.part as a copy of PATH, a finished container, to change what may change later:
+// view cells (prom_writer_put_view_cells), facts (prom_writer_set_meta) and stages
+// (prom_writer_add_stage, where one of the same name is replaced). PATH stays as it is until
+// prom_writer_finish puts the new file in its place. NULL with *error if PATH is not sound
+// (PROM_ERR_INPUT), or as prom_writer_create.
+prom_writer *prom_writer_reopen(const char *path, prom_error *error);
 
 // ---- reading
 
@@ -65,6 +77,12 @@ prom_status prom_container_read_mesh(prom_container *container, const prom_model
                                      uint32_t id, prom_mesh *mesh, prom_error *error);
 prom_status prom_container_read_texture(prom_container *container, const prom_model *model,
                                         uint32_t id, prom_texture *texture, prom_error *error);
+// The model's view cells, checked against it; size 0 where it has none. Free with
+// prom_view_cells_finish.
+prom_status prom_container_read_view_cells(prom_container *container, const prom_model *model,
+                                           prom_view_cells *cells, prom_error *error);
+// Bytes that the view cells take in the file, without their rows' few; after they were read.
+uint64_t prom_container_view_cell_bytes(prom_container *container);
 // The value of a meta key in memory of the container, or NULL.
 const char *prom_container_meta(prom_container *container, const char *key);
 // Calls `each` for the stages in order.
