@@ -15,6 +15,11 @@
 #define TINY_SIZE_PX 2.0f
 #define TINY_LOSS_PX 3.2f
 
+// A node is taken as hidden if less than this shows of it, in pixels and of its footprint: it
+// is covered in the cheapest way.
+#define HIDDEN_PX 1.0f
+#define HIDDEN_SHARE 0.01f
+
 void prom_eval_init(prom_eval *eval, const prom_model *model)
 {
     *eval = (prom_eval){.model = model, .tolerance = 1.0f};
@@ -55,7 +60,7 @@ static float look_at(prom_eval *eval, uint32_t node, bool parent_inside)
     n->culled = cull == PROM_OUTSIDE;
     n->expanded = false;
     n->option_count = 0;
-    n->px = 0.0f;
+    n->px = n->footprint_px = 0.0f;
     n->cmin = n->cmin_benefit = 0.0;
     n->cmin_option = PROM_NONE;
     if (n->culled) return 0.0f;
@@ -68,8 +73,15 @@ static float look_at(prom_eval *eval, uint32_t node, bool parent_inside)
     n->dir = (uint8_t)a.dir;
     n->near_case = a.near_case;
     float in_view;
-    n->px = prom_visible_px(view, m, node, &a, &in_view);
+    n->footprint_px = prom_footprint_in_view(view, m, node, &a, &in_view);
     return in_view;
+}
+
+// Share of a node's footprint that is not hidden behind others.
+static float visible_share(const prom_eval *eval, uint32_t node)
+{
+    const prom_visibility *visibility = eval->selection->visibility;
+    return visibility ? prom_visibility_share(visibility, node) : 1.0f;
 }
 
 // The size that sets the accuracy. Beyond the measured sizes the projected error counts, and
@@ -98,7 +110,9 @@ static void add_options(prom_eval *eval, uint32_t node)
         bool is_mesh = r->kind == PROM_REP_MESH;
         if (!is_mesh && n->near_case) continue;
         bool too_large = !((is_mesh ? size : n->size_px) <= r->max_size_px);
-        if (too_large && !(eval->any_size && eval->any_size[rep])) continue;
+        bool any_size = (eval->any_size && eval->any_size[rep]) ||
+                        (is_mesh && n->hidden && eval->any_mesh_hides);
+        if (too_large && !any_size) continue;
         eval->options[eval->option_count++] = (prom_option){
             .rep = rep,
             .benefit = n->px * prom_accuracy(m, rep, n->dir, size, p->radius),
@@ -107,13 +121,43 @@ static void add_options(prom_eval *eval, uint32_t node)
     n->option_count = eval->option_count - n->first_option;
 }
 
+// What shows of a node, or nothing where that is too little.
+static void set_visible(prom_eval *eval, uint32_t node, float px)
+{
+    prom_eval_node *n = &eval->nodes[node];
+    n->hidden =
+        eval->selection->visibility && px < HIDDEN_PX && px < HIDDEN_SHARE * n->footprint_px;
+    n->px = n->hidden ? 0.0f : px;
+}
+
 // A node under none with pixels of its own keeps those that look_at gave it; a cluster that
 // holds the eye has none, and its children start for themselves.
 static void start_flow(prom_eval *eval, uint32_t node)
 {
     prom_eval_node *n = &eval->nodes[node];
     n->in_flow = !(n->near_case && eval->model->child_count[node]);
-    if (!n->in_flow) n->px = 0.0f;
+    if (!n->in_flow) n->footprint_px = 0.0f;
+    set_visible(eval, node, visible_share(eval, node) * n->footprint_px);
+}
+
+// Splits a node's footprint among its children by their baked shares, and what is visible of it
+// by what is known of them as well.
+static void flow_down(prom_eval *eval, uint32_t node)
+{
+    const prom_model *m = eval->model;
+    const prom_eval_node *n = &eval->nodes[node];
+    uint32_t first = m->first_child[node], count = m->child_count[node];
+    prom_eval_node *children = &eval->nodes[first];
+    prom_split_pixels(m, m->prototype[node], n->dir, n->footprint_px, eval->in_view, eval->px);
+    for (uint32_t c = 0; c < count; c++) {
+        if (children[c].culled) continue;
+        children[c].in_flow = true;
+        children[c].footprint_px = eval->px[c];
+        eval->in_view[c] *= visible_share(eval, first + c);
+    }
+    prom_split_pixels(m, m->prototype[node], n->dir, n->px, eval->in_view, eval->px);
+    for (uint32_t c = 0; c < count; c++)
+        if (!children[c].culled) set_visible(eval, first + c, eval->px[c]);
 }
 
 static void expand(prom_eval *eval, uint32_t node)
@@ -123,15 +167,10 @@ static void expand(prom_eval *eval, uint32_t node)
     uint32_t first = m->first_child[node], count = m->child_count[node];
     n->expanded = true;
     for (uint32_t c = 0; c < count; c++) eval->in_view[c] = look_at(eval, first + c, n->inside);
-    if (n->in_flow)
-        prom_split_pixels(m, m->prototype[node], n->dir, n->px, eval->in_view, eval->px);
+    if (n->in_flow) flow_down(eval, node);
     for (uint32_t c = 0; c < count; c++) {
-        prom_eval_node *child = &eval->nodes[first + c];
-        if (child->culled) continue;
-        if (n->in_flow)
-            child->px = eval->px[c], child->in_flow = true;
-        else
-            start_flow(eval, first + c);
+        if (eval->nodes[first + c].culled) continue;
+        if (!n->in_flow) start_flow(eval, first + c);
         eval->visited[eval->visited_count++] = first + c;
     }
 }
@@ -155,6 +194,7 @@ bool prom_eval_open_visible(void *user, uint32_t node)
 {
     const prom_eval *eval = user;
     const prom_eval_node *n = &eval->nodes[node];
+    if (n->hidden) return false;
     float best = 0.0f;
     for (uint32_t i = 0; i < n->option_count; i++)
         best = fmaxf(best, eval->options[n->first_option + i].benefit);
@@ -211,16 +251,18 @@ static void set_costs(prom_eval *eval, uint32_t node, double share)
 {
     const prom_selection *s = eval->selection;
     const prom_eval_node *n = &eval->nodes[node];
-    float box_px = -1.0f;
+    double shown = share * n->px, hidden = fmax(n->footprint_px - shown, 0.0), box = -1.0;
     for (uint32_t i = 0; i < n->option_count; i++) {
         prom_option *o = &eval->options[n->first_option + i];
         const prom_representation *rep = &eval->model->reps[o->rep];
-        float px = n->px;
-        if (rep->kind != PROM_REP_MESH) {
-            if (box_px < 0.0f) box_px = prom_box_px(s->view, eval->model, node, n->dir, px);
-            px = box_px;
+        double more = 1.0; // than the node covers by itself
+        if (rep->kind != PROM_REP_MESH && n->footprint_px > 0.0f) {
+            if (box < 0.0)
+                box = prom_box_px(s->view, eval->model, node, n->dir, n->footprint_px) /
+                      n->footprint_px;
+            more = box;
         }
-        o->cost = prom_cost_of_rep(s->cost, rep, px * share, px * (1.0 - share));
+        o->cost = prom_cost_of_rep(s->cost, rep, more * shown, more * hidden);
     }
 }
 
@@ -311,7 +353,7 @@ void prom_eval_emit(const prom_eval *eval, uint32_t node, uint32_t option, prom_
                                        .fade_from = PROM_NONE,
                                        .fade = 1.0f,
                                        .depth = n->nearest,
-                                       .footprint_px = n->px,
+                                       .footprint_px = n->footprint_px,
                                        .visible_px = n->px,
                                        .accuracy = n->px > 0.0f ? o->benefit / n->px : 1.0f,
                                        .cost_ms = (float)o->cost,

@@ -22,13 +22,15 @@ typedef struct prom_eval_node {
     double cmin, cmin_benefit; // of the cheapest cut of its subtree; ties by higher benefit
     uint32_t cmin_option;      // its own option in that cut, or PROM_NONE: opened
     uint32_t first_option, option_count;
-    float px; // visible pixels
+    float px;           // visible pixels
+    float footprint_px; // pixels, if nothing outside its ancestor hid it
     float distance, nearest, size_px;
     uint8_t dir;
     bool culled; // nothing below it is in the frustum
     bool inside; // wholly in the frustum: what is below needs no test
     bool near_case;
-    bool in_flow;  // px is that of the whole subtree and flows on to the children
+    bool in_flow;  // its pixels are those of the whole subtree and flow on to the children
+    bool hidden;   // nothing of it is expected to show
     bool expanded; // its children are evaluated
 } prom_eval_node;
 
@@ -47,6 +49,7 @@ typedef struct prom_eval {
     double fixed_ms;      // fixed part of the frame and the background layer
     const bool *any_size; // per representation: valid whatever its max_size_px says, the
                           // selector knows better; NULL: none. The selector's own
+    bool any_mesh_hides;  // what is hidden may be drawn by any mesh, whatever its gaps
     float tolerance;      // factor on what prom_eval_open_visible takes for invisible
     float *in_view, *px;  // of the children of one node
     uint32_t max_children;

@@ -35,8 +35,8 @@ static float filled_share(float covered, float outline)
 // The footprint is that of the distance to the centre; of a wall beside the eye, or the ground
 // below it, that says little. There the node covers as much of what its rectangle covers of the
 // viewport as it covers of its box from afar.
-float prom_visible_px(const prom_view *view, const prom_model *model, uint32_t node,
-                      const prom_appearance *appearance, float *in_view)
+float prom_footprint_in_view(const prom_view *view, const prom_model *model, uint32_t node,
+                             const prom_appearance *appearance, float *in_view)
 {
     const prom_appearance *a = appearance;
     uint32_t prototype = model->prototype[node];

@@ -7,8 +7,8 @@
 // Pixels of the viewport that a node covers by itself, from its appearance. *in_view becomes
 // the part of the node that is in view: that of the appearance, but more where perspective is
 // extreme and the screen rectangle says little.
-float prom_visible_px(const prom_view *view, const prom_model *model, uint32_t node,
-                      const prom_appearance *appearance, float *in_view);
+float prom_footprint_in_view(const prom_view *view, const prom_model *model, uint32_t node,
+                             const prom_appearance *appearance, float *in_view);
 // Pixels that the box around a node covers where the node itself covers `px` of them: a box is
 // shaded all over.
 float prom_box_px(const prom_view *view, const prom_model *model, uint32_t node, uint32_t dir,

@@ -35,6 +35,7 @@ static void select_full(void *state, const prom_selection *selection, prom_cut *
 static void select_coarsest(void *state, const prom_selection *selection, prom_cut *cut)
 {
     prom_eval *eval = state;
+    eval->any_mesh_hides = true; // `full`, which shares the state's functions, takes the first
     prom_eval_run(eval, selection, prom_eval_open_visible, eval);
     prom_eval_begin_cut(eval, cut);
     prom_eval_emit_cmin(eval, cut);

@@ -32,6 +32,7 @@ static void *create(const prom_model *model)
 {
     meta_state *state = prom_calloc(1, sizeof *state);
     prom_eval_init(&state->eval, model);
+    state->eval.any_mesh_hides = true;
     state->nodes = prom_alloc(model->tree_count, sizeof *state->nodes);
     state->list.entries = prom_alloc(model->tree_count, sizeof *state->list.entries);
     return state;

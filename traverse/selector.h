@@ -6,6 +6,7 @@
 #include "metaobj/model.h"
 #include "traverse/cost.h"
 #include "traverse/view.h"
+#include "traverse/visibility.h"
 
 #include <stdbool.h>
 
@@ -13,7 +14,8 @@ typedef struct prom_selection {
     const prom_view *view;
     const prom_cost_model *cost;
     double budget_ms; // for prediction (fixed part included): what the cut may be predicted at
-    float distance_scale; // for `distance`: factor on its ranges; 0 means 1
+    float distance_scale;              // for `distance`: factor on its ranges; 0 means 1
+    const prom_visibility *visibility; // begun for this view; NULL: nothing hides anything
 } prom_selection;
 
 typedef struct prom_selector prom_selector;

@@ -14,8 +14,8 @@
 #include "metaobj/view_cells.h"
 #include "traverse/view.h"
 
-// No share is smaller: what is hidden still comes before nothing at all.
-#define PROM_VISIBILITY_LEAST (1.0f / 1024.0f)
+// No share is smaller: of a full screen less than a pixel.
+#define PROM_VISIBILITY_LEAST (1.0f / (1 << 20))
 
 typedef struct prom_visibility prom_visibility;
 
@@ -31,12 +31,11 @@ void prom_visibility_begin(prom_visibility *visibility, const prom_camera *camer
 // What was counted of one entry of a cut in the picture drawn from it.
 typedef struct prom_visible_count {
     prom_cut_entry entry; // as the selector gave it
-    float px;             // visible pixels
+    float px;             // visible pixels; below 0: they were not counted
 } prom_visible_count;
-// The counts of a whole cut that was drawn from `camera`. Nodes above the entries get the sums;
-// nodes below keep what they had, and share in their ancestor's pixels.
-void prom_visibility_feed(prom_visibility *visibility, const prom_model *model,
-                          const prom_camera *camera, const prom_visible_count *counts,
+// The counts of a whole cut, of the frame begun last or a few before it. Nodes above the
+// entries get the sums; nodes below keep what they had, and share in their ancestor's pixels.
+void prom_visibility_feed(prom_visibility *visibility, const prom_visible_count *counts,
                           size_t count);
 
 // Share of a node's footprint that shows, in [PROM_VISIBILITY_LEAST, 1].

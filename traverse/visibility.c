@@ -1,0 +1,224 @@
+#include "traverse/visibility.h"
+
+#include "benefit/accuracy.h"
+#include "traverse/view_private.h"
+
+#include <math.h>
+
+// A counted share counts for half as much as before once the eye has moved by this part of the
+// distance to what it sees: by then other things are hidden. By taste.
+#define HALF_MOVE 0.5f
+// Pixels of a footprint in which a counting that found nothing is believed at once: fewer are
+// seldom met by the samples.
+#define SURE_PX 64.0f
+// And how much is believed of one that found less than before, and of one that found nothing:
+// samples of a narrow view of something large come and go.
+#define FALL 0.5f
+#define FALL_TO_NOTHING 0.75f
+// A footprint of fewer pixels says nothing.
+#define LEAST_PX 1e-3f
+
+typedef struct node_state {
+    float share;   // as counted last
+    float moved;   // the odometer then
+    float prior;   // by the cell
+    uint32_t cell; // the number of the cell's visit for which that holds
+    bool counted;  // share and moved are valid
+} node_state;
+
+// Sums over the entries below a node; valid for one feed.
+typedef struct node_sum {
+    float px, footprint_px;
+    uint32_t feed;
+} node_sum;
+
+struct prom_visibility {
+    const prom_model *model;
+    const prom_view_cells *cells;
+    node_state *nodes;
+    node_sum *sums;
+    uint32_t *touched; // of one feed, or one cell
+    uint32_t touched_count, feeds;
+    // The eye's way, each piece in units of the distance to what was seen from there.
+    float odometer, sight; // sight: that distance
+    double eye[3];
+    bool has_eye;
+    const prom_view_cell *cell;
+    uint32_t cell_visit; // 0: in none
+};
+
+prom_visibility *prom_visibility_create(const prom_model *model, const prom_view_cells *cells)
+{
+    prom_visibility *v = prom_calloc(1, sizeof *v);
+    v->model = model;
+    v->cells = cells && cells->size > 0.0 ? cells : NULL;
+    v->nodes = prom_calloc(model->tree_count, sizeof *v->nodes);
+    v->sums = prom_calloc(model->tree_count, sizeof *v->sums);
+    v->touched = prom_alloc(model->tree_count, sizeof *v->touched);
+    return v;
+}
+
+void prom_visibility_destroy(prom_visibility *visibility)
+{
+    if (!visibility) return;
+    prom_free(visibility->nodes);
+    prom_free(visibility->sums);
+    prom_free(visibility->touched);
+    prom_free(visibility);
+}
+
+void prom_visibility_forget(prom_visibility *visibility)
+{
+    for (uint32_t n = 0; n < visibility->model->tree_count; n++)
+        visibility->nodes[n].counted = false;
+    visibility->has_eye = false;
+}
+
+// Adds to the sums of a node and of all above it, up to the root.
+static void add_upwards(prom_visibility *v, uint32_t node, float px, float footprint_px)
+{
+    for (; node != PROM_NONE; node = v->model->parent[node]) {
+        node_sum *s = &v->sums[node];
+        if (s->feed != v->feeds) {
+            *s = (node_sum){.feed = v->feeds};
+            v->touched[v->touched_count++] = node;
+        }
+        s->px += px;
+        s->footprint_px += footprint_px;
+    }
+}
+
+static void begin_sums(prom_visibility *v)
+{
+    v->touched_count = 0;
+    v->feeds++;
+}
+
+static float clamp_share(float share)
+{
+    return fminf(fmaxf(share, PROM_VISIBILITY_LEAST), 1.0f);
+}
+
+// ---- cells
+
+// What a node covers seen from the eye, for a focal length of 1 px.
+static float footprint_around(const prom_view *view, const prom_model *model, uint32_t node)
+{
+    prom_appearance a;
+    prom_view_appearance_culled(view, model, node, PROM_INSIDE, &a);
+    if (a.nearest < PROM_EXTREME_NEAREST * a.distance) return 0.0f; // all around
+    return prom_footprint_px(model, model->prototype[node], a.dir, a.size_px) /
+           (view->f_px * view->f_px);
+}
+
+static void enter_cell(prom_visibility *v, const prom_camera *camera)
+{
+    const prom_view_cell *cell = v->cell;
+    prom_view view;
+    prom_view_init(&view, camera);
+    begin_sums(v);
+    for (uint32_t i = cell->first; i < cell->first + cell->count; i++) {
+        uint32_t leaf = v->cells->leaves[i];
+        float share = prom_view_share_decode(v->cells->shares[i]);
+        float footprint = footprint_around(&view, v->model, leaf);
+        add_upwards(v, leaf, share * (footprint > 0.0f ? footprint : 1.0f), 0.0f);
+        v->nodes[leaf].prior = share;
+        v->nodes[leaf].cell = v->cell_visit;
+    }
+    for (uint32_t i = 0; i < v->touched_count; i++) {
+        uint32_t node = v->touched[i];
+        if (!v->model->child_count[node]) continue;
+        float footprint = footprint_around(&view, v->model, node);
+        v->nodes[node].prior = footprint > 0.0f ? v->sums[node].px / footprint : 1.0f;
+        v->nodes[node].cell = v->cell_visit;
+    }
+}
+
+static void look_up_cell(prom_visibility *v, const prom_camera *camera)
+{
+    if (!v->cells) return;
+    const prom_view_cell *cell = prom_view_cells_at(v->cells, camera->eye);
+    if (cell == v->cell) return;
+    v->cell = cell;
+    if (!cell) return;
+    v->cell_visit++;
+    enter_cell(v, camera);
+}
+
+// What is known of a node without counting.
+static float prior_of(const prom_visibility *v, uint32_t node)
+{
+    if (!v->cell) return 1.0f;
+    const node_state *n = &v->nodes[node];
+    return n->cell == v->cell_visit ? clamp_share(n->prior) : PROM_VISIBILITY_LEAST;
+}
+
+// ---- counts
+
+void prom_visibility_begin(prom_visibility *visibility, const prom_camera *camera)
+{
+    prom_visibility *v = visibility;
+    double square = 0.0;
+    for (int k = 0; k < 3; k++) {
+        double d = camera->eye[k] - v->eye[k];
+        square += d * d;
+        v->eye[k] = camera->eye[k];
+    }
+    if (v->has_eye && v->sight > 0.0f) v->odometer += (float)sqrt(square) / v->sight;
+    v->has_eye = true;
+    look_up_cell(v, camera);
+}
+
+float prom_visibility_share(const prom_visibility *visibility, uint32_t node)
+{
+    const node_state *n = &visibility->nodes[node];
+    float prior = prior_of(visibility, node);
+    if (!n->counted) return prior;
+    float weight = exp2f((n->moved - visibility->odometer) / HALF_MOVE);
+    return prior + (n->share - prior) * weight;
+}
+
+static void settle(prom_visibility *v, uint32_t node)
+{
+    const node_sum *sum = &v->sums[node];
+    node_state *n = &v->nodes[node];
+    if (!(sum->footprint_px > LEAST_PX)) return;
+    float now = clamp_share(sum->px / sum->footprint_px);
+    float before = prom_visibility_share(v, node);
+    if (now < before) {
+        float most = !n->counted ? 1.0f : sum->px > 0.0f ? FALL : FALL_TO_NOTHING;
+        float belief = fminf(sum->footprint_px / SURE_PX, most);
+        now = before + belief * (now - before);
+    }
+    n->share = now;
+    n->moved = v->odometer;
+    n->counted = true;
+}
+
+// The distance to what is seen: that of the entries, weighted by their pixels.
+static float sight_of(const prom_visible_count *counts, size_t count)
+{
+    double sum = 0.0, weight = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        if (!(counts[i].px > 0.0f)) continue;
+        sum += (double)counts[i].px * counts[i].entry.depth;
+        weight += counts[i].px;
+    }
+    return weight > 0.0 ? (float)(sum / weight) : 0.0f;
+}
+
+void prom_visibility_feed(prom_visibility *visibility, const prom_visible_count *counts,
+                          size_t count)
+{
+    prom_visibility *v = visibility;
+    begin_sums(v);
+    for (size_t i = 0; i < count; i++) {
+        const prom_cut_entry *e = &counts[i].entry;
+        float px = counts[i].px >= 0.0f ? counts[i].px
+                                        : prom_visibility_share(v, e->node) * e->footprint_px;
+        add_upwards(v, e->node, px, e->footprint_px);
+    }
+    for (uint32_t i = 0; i < v->touched_count; i++) settle(v, v->touched[i]);
+    float sight = sight_of(counts, count);
+    if (sight > 0.0f) v->sight = sight;
+}
