@@ -51,6 +51,17 @@ static json_t *accuracy_json(const prom_run_statistics *t)
                      prom_json_number(t->predicted_accuracy));
 }
 
+static json_t *quality_json(const prom_run_statistics *t, double ppd)
+{
+    if (!t->quality_frames) return json_null(); // not asked for
+    return json_pack("{s:s, s:o, s:i, s:o, s:o, s:o, s:o, s:o}", "metric", "flip", "ppd",
+                     prom_json_number(ppd), "frames", (int)t->quality_frames, "mean",
+                     prom_json_number(t->flip.mean), "p95", prom_json_number(t->flip.p95),
+                     "loss", prom_json_number(t->loss_share), "hidden_cost",
+                     prom_json_number(t->hidden_cost), "hidden_nodes",
+                     prom_json_number(t->hidden_nodes));
+}
+
 static void set(json_t *object, const char *key, json_t *value)
 {
     json_object_set_new(object, key, value);
@@ -91,6 +102,7 @@ static void set_found(json_t *run, const prom_run_facts *f, const prom_run_stati
         r->infeasible_frames ? prom_json_number(r->least_budget_ms) : json_null());
     set(run, "holes", holes_json(t));
     set(run, "accuracy", accuracy_json(t));
+    set(run, "quality", quality_json(t, r->ppd));
     set(run, "start_s", prom_json_number(f->session->start_s));
     set(run, "calibration_s", prom_json_number(f->session->calibration_s));
     set(run, "memory_mb", pair_json("start", r->memory_start_mb, "end", r->memory_end_mb));
@@ -125,9 +137,15 @@ static void put_row(FILE *out, size_t frame, double budget_ms, const prom_frame_
     fprintf(out, "%zu,%.4f,%g,%.4f,%.4f,%.4f,%.0f,%.0f,%u,%.1f,%.1f,%d", frame, r->t_s,
             budget_ms, r->frame_ms, r->select_ms, r->predicted_ms, r->triangles, r->draws,
             r->cut_nodes, r->benefit_px, r->loss_px, r->feasible);
-    put_share(out, r->holes_checked, r->holes);
-    put_share(out, r->accuracy_checked, r->accuracy);
+    const prom_difference *d = &r->difference;
+    bool quality = d->found & PROM_COMPARE_QUALITY;
+    put_share(out, d->found & PROM_COMPARE_HOLES, d->holes);
+    put_share(out, d->found & PROM_COMPARE_ACCURACY, d->accuracy);
     put_share(out, true, prom_predicted_accuracy(r));
+    put_share(out, quality, d->flip);
+    put_share(out, quality, d->loss);
+    put_share(out, quality, d->hidden_cost);
+    put_share(out, quality, d->hidden_nodes);
     fputc('\n', out);
 }
 
@@ -139,7 +157,8 @@ prom_status prom_bench_write_csv(const char *path, const prom_loop_options *opti
     FILE *out = open_memstream(&text, &bytes);
     if (!out) return prom_fail(error, PROM_ERR_OUTPUT, "%s: %s", path, strerror(errno));
     fputs("frame,t_s,budget_ms,frame_ms,select_ms,predicted_ms,triangles,draws,cut_nodes,"
-          "benefit_px,loss_px,feasible,holes,accuracy,predicted_accuracy\n",
+          "benefit_px,loss_px,feasible,holes,accuracy,predicted_accuracy,flip,loss,hidden_cost,"
+          "hidden_nodes\n",
           out);
     for (size_t i = 0; i < result->frames.count; i++)
         put_row(out, i, options->budget_ms, &result->frames.data[i]);
@@ -177,6 +196,13 @@ void prom_bench_print(const prom_run_facts *facts)
         printf("accuracy   mean %.2f %%, min %.2f %% in %u frames, predicted mean %.2f %%\n",
                100 * t.accuracy_mean, 100 * t.accuracy_min, t.accuracy_frames,
                100 * t.predicted_accuracy);
+    if (t.quality_frames) {
+        printf("quality    FLIP mean %.4f, p95 %.4f at %.2f pixels a degree in %u frames\n",
+               t.flip.mean, t.flip.p95, r->ppd, t.quality_frames);
+        printf("visible    %.2f %% of the pixels lost; hidden: %.1f %% of the cost, %.1f %% of "
+               "the nodes\n",
+               100 * t.loss_share, 100 * t.hidden_cost, 100 * t.hidden_nodes);
+    }
     printf("start      %.1f s, memory %.0f MiB, at the end %.0f\n", facts->session->start_s,
            r->memory_start_mb, r->memory_end_mb);
 }

@@ -7,6 +7,7 @@
 
 #define DEFAULT_BUDGET_MS 33.0
 #define AUTO_FRAMES 300
+#define QUALITY_FRAMES 20
 
 typedef struct bench_options {
     prom_view_options view;
@@ -24,6 +25,8 @@ enum {
     KEY_COLOURS,
     KEY_HOLES,
     KEY_ACCURACY,
+    KEY_QUALITY,
+    KEY_PPD,
 };
 
 static const struct argp_option options[] = {
@@ -43,6 +46,15 @@ static const struct argp_option options[] = {
     {"check-accuracy", KEY_ACCURACY, "N", 0,
      "On N frames also draw full detail and report how much the picture looks like it: 1 - the "
      "mean error of `edge-blur`",
+     1},
+    {"quality-frames", KEY_QUALITY, "N", 0,
+     "On N frames also draw full detail and report how different the picture looks (mean "
+     "FLIP), the share of visible pixels lost, and the shares of cost and nodes that show no "
+     "pixel (20)",
+     1},
+    {"ppd", KEY_PPD, "X", 0,
+     "Pixels per degree that FLIP is told (those of the picture filling a screen 0.7 m wide, "
+     "0.7 m away: 22.34 for 1280 pixels)",
      1},
     {0},
 };
@@ -82,6 +94,14 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case KEY_ACCURACY:
         o->loop.check_accuracy =
             (uint32_t)prom_option_whole(state, "--check-accuracy", text, 0, 100000);
+        break;
+    case KEY_QUALITY:
+        o->loop.quality_frames =
+            (uint32_t)prom_option_whole(state, "--quality-frames", text, 0, 100000);
+        break;
+    case KEY_PPD:
+        o->loop.ppd =
+            prom_option_number(state, "--ppd", text, PROM_FLIP_PPD_MIN, PROM_FLIP_PPD_MAX);
         break;
     default:
         return prom_option_model(key, text, state, &o->model);
@@ -147,8 +167,9 @@ static prom_status run_loop(bench_options *o, prom_session *session, prom_error 
 
 prom_status prom_command_bench(int argc, char **argv, prom_error *error)
 {
-    bench_options o = {.view = prom_view_options_default,
-                       .loop = {.warmup = 30, .keep_every = 30}};
+    bench_options o = {
+        .view = prom_view_options_default,
+        .loop = {.warmup = 30, .keep_every = 30, .quality_frames = QUALITY_FRAMES}};
     argp_parse(&argp, argc, argv, 0, NULL, &o);
     if (!o.view.selector) o.view.selector = "greedy";
     if (!(o.view.budget_ms > 0)) o.view.budget_ms = DEFAULT_BUDGET_MS;

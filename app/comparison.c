@@ -1,27 +1,51 @@
 #include "app/comparison.h"
 
+#include "app/pixel_shares.h"
 #include "benefit/metric.h"
 
 #include <math.h>
 
 #define COVERED 128 // alpha: the tree gives 1, the clear and the background layer 0
 
+static prom_compared new_compared(const prom_session *session, unsigned wanted)
+{
+    size_t pixels = (size_t)session->camera.width * session->camera.height;
+    prom_compared picture = {.rgba = prom_alloc(pixels, 4)};
+    if (wanted & PROM_COMPARE_ACCURACY)
+        picture.features = prom_alloc(pixels, 2 * sizeof *picture.features);
+    if (wanted & PROM_COMPARE_QUALITY)
+        picture.px = prom_alloc(session->model.tree_count, sizeof *picture.px);
+    return picture;
+}
+
+static void finish_compared(prom_compared *picture)
+{
+    prom_free(picture->rgba);
+    prom_free(picture->features);
+    prom_free(picture->px);
+}
+
 prom_status prom_comparison_init(prom_comparison *comparison, const prom_session *session,
-                                 bool with_accuracy, prom_error *error)
+                                 unsigned wanted, double ppd, prom_error *error)
 {
     uint32_t width = session->camera.width, height = session->camera.height;
     size_t pixels = (size_t)width * height;
+    bool quality = wanted & PROM_COMPARE_QUALITY;
     prom_comparison *c = comparison;
     *c = (prom_comparison){0};
     c->full = prom_selector_create("full", &session->model, error);
     if (!c->full) return error->status;
-    c->truth = prom_alloc(pixels, 4);
-    c->shown = prom_alloc(pixels, 4);
-    if (!with_accuracy) return PROM_OK;
-    c->grey = prom_alloc(pixels, sizeof *c->grey);
-    c->truth_features = prom_alloc(pixels, 2 * sizeof *c->truth_features);
-    c->shown_features = prom_alloc(pixels, 2 * sizeof *c->shown_features);
-    c->scratch = prom_alloc(prom_edge_blur_scratch(width, height), sizeof *c->scratch);
+    c->target = prom_target_create(width, height, quality, error);
+    if (!c->target) return error->status;
+    c->truth = new_compared(session, wanted);
+    c->shown = new_compared(session, wanted);
+    c->plane = prom_alloc(pixels, sizeof *c->plane);
+    if (wanted & PROM_COMPARE_ACCURACY)
+        c->scratch = prom_alloc(prom_edge_blur_scratch(width, height), sizeof *c->scratch);
+    if (!quality) return PROM_OK;
+    c->ids = prom_alloc(pixels, sizeof *c->ids);
+    c->node_accuracy = prom_alloc(session->model.tree_count, sizeof *c->node_accuracy);
+    c->flip = prom_flip_create(width, height, ppd);
     return PROM_OK;
 }
 
@@ -29,21 +53,46 @@ void prom_comparison_finish(prom_comparison *comparison)
 {
     prom_selector_destroy(comparison->full);
     prom_cut_finish(&comparison->cut);
-    prom_free(comparison->truth);
-    prom_free(comparison->shown);
-    prom_free(comparison->grey);
-    prom_free(comparison->truth_features);
-    prom_free(comparison->shown_features);
+    if (comparison->target) prom_target_destroy(comparison->target);
+    finish_compared(&comparison->truth);
+    finish_compared(&comparison->shown);
+    prom_free(comparison->plane);
     prom_free(comparison->scratch);
+    prom_free(comparison->ids);
+    prom_free(comparison->node_accuracy);
+    prom_flip_destroy(comparison->flip);
     *comparison = (prom_comparison){0};
 }
 
-static void draw(prom_session *session, const prom_camera *camera, const prom_cut *cut,
-                 uint8_t *rgba)
+static void draw(const prom_comparison *c, prom_session *session, const prom_camera *camera,
+                 const prom_cut *cut, prom_ids ids)
 {
-    prom_frame_options options = {0};
-    prom_session_draw(session, cut, camera, &options);
-    prom_target_read_rgba(session->target, 0, 0, camera->width, camera->height, rgba);
+    prom_frame_options options = {.ids = ids};
+    prom_renderer_draw_frame(session->renderer, session->list, c->target, &session->model, cut,
+                             camera, &options);
+}
+
+static void count(const prom_comparison *c, const prom_session *session,
+                  const prom_camera *camera, uint32_t *px)
+{
+    prom_target_read_ids(c->target, 0, 0, camera->width, camera->height, c->ids);
+    prom_count_pixels(c->ids, (size_t)camera->width * camera->height, session->model.tree_count,
+                      px);
+}
+
+// What is blended is counted from a second drawing, for it hides nothing: a pixel may show both
+// a pane and what is behind it.
+static void look(const prom_comparison *c, prom_session *session, const prom_camera *camera,
+                 const prom_cut *cut, bool counted, prom_compared *picture)
+{
+    draw(c, session, camera, cut, PROM_IDS_OPAQUE);
+    prom_target_read_rgba(c->target, 0, 0, camera->width, camera->height, picture->rgba);
+    if (!counted) return;
+    memset(picture->px, 0, session->model.tree_count * sizeof *picture->px);
+    count(c, session, camera, picture->px);
+    if (!prom_draw_list_has_blended(session->list)) return;
+    draw(c, session, camera, cut, PROM_IDS_BLENDED);
+    count(c, session, camera, picture->px);
 }
 
 static double holes_share(const uint8_t *truth, const uint8_t *shown, size_t pixels)
@@ -57,33 +106,50 @@ static double holes_share(const uint8_t *truth, const uint8_t *shown, size_t pix
     return covered ? (double)missing / (double)covered : 0;
 }
 
-static void features_of(prom_comparison *c, const uint8_t *rgba, uint32_t width,
-                        uint32_t height, float *features)
+static void find_features(const prom_comparison *c, const prom_camera *camera,
+                          const prom_compared *picture)
 {
-    prom_metric_grey(rgba, (size_t)width * height, c->grey);
-    prom_edge_blur_features(c->grey, width, height, features, c->scratch);
+    prom_metric_grey(picture->rgba, (size_t)camera->width * camera->height, c->plane);
+    prom_edge_blur_features(c->plane, camera->width, camera->height, picture->features,
+                            c->scratch);
 }
 
-static double accuracy_of(prom_comparison *c, uint32_t width, uint32_t height)
+static double accuracy_of(const prom_comparison *c, const prom_camera *camera)
 {
-    size_t pixels = (size_t)width * height;
-    features_of(c, c->truth, width, height, c->truth_features);
-    features_of(c, c->shown, width, height, c->shown_features);
-    prom_edge_blur_error(c->truth_features, c->shown_features, width, height, c->grey);
+    size_t pixels = (size_t)camera->width * camera->height;
+    find_features(c, camera, &c->truth);
+    find_features(c, camera, &c->shown);
+    prom_edge_blur_error(c->truth.features, c->shown.features, camera->width, camera->height,
+                         c->plane);
     double sum = 0;
-    for (size_t i = 0; i < pixels; i++) sum += c->grey[i];
+    for (size_t i = 0; i < pixels; i++) sum += c->plane[i];
     return 1 - sum / (double)pixels;
 }
 
+static void add_quality(const prom_comparison *c, const prom_model *model, const prom_cut *cut,
+                        prom_difference *difference)
+{
+    prom_hidden_share hidden = prom_hidden_share_of(cut, c->shown.px);
+    difference->flip = prom_flip_run(c->flip, c->truth.rgba, c->shown.rgba, 4, c->plane);
+    difference->loss = prom_loss_share(model, cut, c->truth.px, c->node_accuracy);
+    difference->hidden_cost = hidden.cost;
+    difference->hidden_nodes = hidden.nodes;
+}
+
 prom_difference prom_comparison_run(prom_comparison *comparison, prom_session *session,
-                                    const prom_camera *camera, const prom_cut *cut)
+                                    const prom_camera *camera, const prom_cut *cut,
+                                    unsigned wanted)
 {
     prom_comparison *c = comparison;
+    bool quality = wanted & PROM_COMPARE_QUALITY;
+    prom_difference difference = {.found = wanted};
     prom_session_select(session, c->full, camera, INFINITY, 1, &c->cut);
-    draw(session, camera, cut, c->shown);
-    draw(session, camera, &c->cut, c->truth);
-    prom_difference difference = {
-        .holes = holes_share(c->truth, c->shown, (size_t)camera->width * camera->height)};
-    if (c->grey) difference.accuracy = accuracy_of(c, camera->width, camera->height);
+    look(c, session, camera, cut, quality, &c->shown);
+    look(c, session, camera, &c->cut, quality, &c->truth);
+    if (wanted & PROM_COMPARE_HOLES)
+        difference.holes =
+            holes_share(c->truth.rgba, c->shown.rgba, (size_t)camera->width * camera->height);
+    if (wanted & PROM_COMPARE_ACCURACY) difference.accuracy = accuracy_of(c, camera);
+    if (quality) add_quality(c, &session->model, cut, &difference);
     return difference;
 }

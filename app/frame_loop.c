@@ -4,6 +4,7 @@
 #include "metaobj/base/clock.h"
 #include "metaobj/base/log.h"
 
+#include <math.h>
 #include <stdio.h>
 
 typedef struct loop {
@@ -87,13 +88,14 @@ static bool is_spaced(uint32_t i, uint32_t wanted, uint32_t frames)
     return after > before;
 }
 
-static void compare(loop *l, const prom_camera *camera, prom_frame_record *record)
+// What frame i is to be compared for.
+static unsigned wanted_of(const prom_loop_options *o, uint32_t i)
 {
-    if (!record->holes_checked && !record->accuracy_checked) return;
-    prom_difference d =
-        prom_comparison_run(&l->comparison, l->step.session, camera, &l->step.cut);
-    if (record->holes_checked) record->holes = d.holes;
-    if (record->accuracy_checked) record->accuracy = d.accuracy;
+    unsigned wanted = 0;
+    if (is_spaced(i, o->check_holes, o->frames)) wanted |= PROM_COMPARE_HOLES;
+    if (is_spaced(i, o->check_accuracy, o->frames)) wanted |= PROM_COMPARE_ACCURACY;
+    if (is_spaced(i, o->quality_frames, o->frames)) wanted |= PROM_COMPARE_QUALITY;
+    return wanted;
 }
 
 // Pictures and comparisons after a frame. They disturb the caches, and `full` the device's
@@ -103,16 +105,17 @@ static prom_status between_frames(loop *l, uint32_t i, prom_frame_record *record
 {
     const prom_loop_options *o = l->options;
     bool keep = o->keep_folder && i % o->keep_every == 0;
-    record->holes_checked = is_spaced(i, o->check_holes, o->frames);
-    record->accuracy_checked = is_spaced(i, o->check_accuracy, o->frames);
-    if (!keep && !record->holes_checked && !record->accuracy_checked) return PROM_OK;
+    unsigned wanted = wanted_of(o, i);
+    if (!keep && !wanted) return PROM_OK;
     prom_camera camera = l->step.session->camera;
     prom_path_pose(&l->step.session->path, i, &camera);
     if (keep) {
         prom_status status = keep_pictures(l, i, &camera, error);
         if (status) return status;
     }
-    compare(l, &camera, record);
+    if (wanted)
+        record->difference =
+            prom_comparison_run(&l->comparison, l->step.session, &camera, &l->step.cut, wanted);
     draw_frame(l, i);
     return PROM_OK;
 }
@@ -148,6 +151,19 @@ static prom_status walk(loop *l, prom_loop_result *result, prom_error *error)
     return status;
 }
 
+static double full_screen_ppd(uint32_t width)
+{
+    return fmax(PROM_FLIP_PPD * width / PROM_FLIP_SCREEN_PX, PROM_FLIP_PPD_MIN);
+}
+
+static prom_status open_comparison(loop *l, double ppd, prom_error *error)
+{
+    unsigned wanted = 0;
+    for (uint32_t i = 0; i < l->options->frames; i++) wanted |= wanted_of(l->options, i);
+    if (!wanted) return PROM_OK;
+    return prom_comparison_init(&l->comparison, l->step.session, wanted, ppd, error);
+}
+
 prom_status prom_frame_loop_run(prom_session *session, const prom_loop_options *options,
                                 prom_loop_result *result, prom_error *error)
 {
@@ -156,8 +172,8 @@ prom_status prom_frame_loop_run(prom_session *session, const prom_loop_options *
         prom_frame_step_init(&l.step, session, options->selector, options->budget_ms,
                              options->distance_scale, error);
     if (status) return status;
-    if (options->check_holes || options->check_accuracy)
-        status = prom_comparison_init(&l.comparison, session, options->check_accuracy, error);
+    result->ppd = options->ppd > 0 ? options->ppd : full_screen_ppd(session->camera.width);
+    status = open_comparison(&l, result->ppd, error);
     if (!status) status = walk(&l, result, error);
     prom_comparison_finish(&l.comparison);
     prom_frame_step_finish(&l.step);

@@ -5,6 +5,7 @@
 #ifndef PROM_APP_FRAME_STEP_H
 #define PROM_APP_FRAME_STEP_H
 
+#include "app/comparison.h"
 #include "app/session.h"
 #include "traverse/governor.h"
 
@@ -16,10 +17,7 @@ typedef struct prom_frame_record {
     double benefit_px, loss_px;
     uint32_t cut_nodes;
     bool feasible; // the cheapest cut was within what could be spent
-    // Comparison with full detail, where it was made.
-    bool holes_checked, accuracy_checked;
-    double holes;    // share of the pixels covered by full detail that the cut does not cover
-    double accuracy; // of the whole picture, in [0,1]
+    prom_difference difference; // from full detail, where it was looked for
 } prom_frame_record;
 
 typedef struct prom_frame_step {

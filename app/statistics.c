@@ -63,10 +63,11 @@ static void add_prediction(const prom_frame_record *records, size_t count,
 static void add_holes(const prom_frame_record *records, size_t count, prom_run_statistics *s)
 {
     for (size_t i = 0; i < count; i++) {
-        if (!records[i].holes_checked) continue;
+        const prom_difference *d = &records[i].difference;
+        if (!(d->found & PROM_COMPARE_HOLES)) continue;
         s->hole_frames++;
-        s->holes_mean += records[i].holes;
-        s->holes_max = fmax(s->holes_max, records[i].holes);
+        s->holes_mean += d->holes;
+        s->holes_max = fmax(s->holes_max, d->holes);
     }
     if (s->hole_frames) s->holes_mean /= s->hole_frames;
 }
@@ -81,16 +82,36 @@ static void add_accuracy(const prom_frame_record *records, size_t count, prom_ru
 {
     double least = 1;
     for (size_t i = 0; i < count; i++) {
-        if (!records[i].accuracy_checked) continue;
+        const prom_difference *d = &records[i].difference;
+        if (!(d->found & PROM_COMPARE_ACCURACY)) continue;
         s->accuracy_frames++;
-        s->accuracy_mean += records[i].accuracy;
+        s->accuracy_mean += d->accuracy;
         s->predicted_accuracy += prom_predicted_accuracy(&records[i]);
-        least = fmin(least, records[i].accuracy);
+        least = fmin(least, d->accuracy);
     }
     if (!s->accuracy_frames) return;
     s->accuracy_mean /= s->accuracy_frames;
     s->predicted_accuracy /= s->accuracy_frames;
     s->accuracy_min = least;
+}
+
+// values: room for one of each record.
+static void add_quality(const prom_frame_record *records, size_t count, double *values,
+                        prom_run_statistics *s)
+{
+    for (size_t i = 0; i < count; i++) {
+        const prom_difference *d = &records[i].difference;
+        if (!(d->found & PROM_COMPARE_QUALITY)) continue;
+        values[s->quality_frames++] = d->flip;
+        s->loss_share += d->loss;
+        s->hidden_cost += d->hidden_cost;
+        s->hidden_nodes += d->hidden_nodes;
+    }
+    if (!s->quality_frames) return;
+    s->flip = prom_spread_of(values, s->quality_frames);
+    s->loss_share /= s->quality_frames;
+    s->hidden_cost /= s->quality_frames;
+    s->hidden_nodes /= s->quality_frames;
 }
 
 prom_run_statistics prom_run_statistics_of(const prom_frame_record *records, size_t count,
@@ -102,6 +123,7 @@ prom_run_statistics prom_run_statistics_of(const prom_frame_record *records, siz
     s.frame_ms = prom_spread_of(values, count);
     for (size_t i = 0; i < count; i++) values[i] = records[i].select_ms;
     s.select_ms = prom_spread_of(values, count);
+    add_quality(records, count, values, &s);
     prom_free(values);
     for (size_t i = 0; i < count; i++) {
         s.triangles += records[i].triangles / (double)count;

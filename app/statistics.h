@@ -16,10 +16,12 @@ typedef struct prom_run_statistics {
     uint32_t misses, longest_misses; // the longest run of them
     double mape, worst_under;        // of predicted_ms: mean |p/a - 1|, greatest a/p - 1
     // Of the frames compared with full detail; 0 where there is none.
-    uint32_t hole_frames, accuracy_frames;
+    uint32_t hole_frames, accuracy_frames, quality_frames;
     double holes_mean, holes_max;
     double accuracy_mean, accuracy_min;
     double predicted_accuracy; // mean of the same frames: benefit / (benefit + loss)
+    prom_spread flip;          // of the frames' means
+    double loss_share, hidden_cost, hidden_nodes; // means, see prom_difference
 } prom_run_statistics;
 
 // values: count >= 1 of them; sorted on return.

@@ -121,8 +121,9 @@ run() {
         rm -rf "$out/$scene/$selector-frames"
         "$program" bench "$out/$scene.prom" --path "$out/$scene.path" --selector "$selector" \
             --budget-ms "$budget" --resolution "$size" --frames "$(frames_of "$scene")" \
-            --check-holes 10 --check-accuracy 10 --keep-frames "$out/$scene/$selector-frames" \
-            --every 50 --false-colours --report "$out/$scene/$selector.json" \
+            --check-holes 10 --check-accuracy 10 --quality-frames 10 \
+            --keep-frames "$out/$scene/$selector-frames" --every 50 --false-colours \
+            --report "$out/$scene/$selector.json" \
             --csv "$out/$scene/$selector.csv"
     done
 }

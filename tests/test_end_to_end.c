@@ -171,6 +171,7 @@ static const char *const keys[] = {
     "holes.max",       "accuracy.mean",
     "accuracy.min",    "accuracy.predicted",
     "device.renderer", "resolution",
+    "quality.metric",  "quality.ppd",
 };
 
 static void check_run(json_t *one, const char *selector)
@@ -190,6 +191,15 @@ static void check_run(json_t *one, const char *selector)
     double accuracy = number(one, "accuracy.mean"), least = number(one, "accuracy.min");
     assert_true(number(one, "accuracy.frames") == 3);
     assert_true(least > 0 && least <= accuracy && accuracy <= 1);
+    assert_string_equal(json_string_value(at(one, "quality.metric")), "flip");
+    assert_true(fabs(number(one, "quality.ppd") - 67.0206 * 160 / 3840) < 1e-9);
+    assert_true(number(one, "quality.frames") == 3);
+    double flip = number(one, "quality.mean"), worst = number(one, "quality.p95");
+    assert_true(flip >= 0 && flip <= worst && worst < 1);
+    const char *const shares[] = {"quality.loss", "quality.hidden_cost",
+                                  "quality.hidden_nodes"};
+    for (int i = 0; i < 3; i++)
+        assert_true(number(one, shares[i]) >= 0 && number(one, shares[i]) < 1);
     assert_true(number(one, "cut_nodes.mean") >= 1);
     assert_true(number(one, "memory_mb.end") > 0);
 }
@@ -205,8 +215,8 @@ static void check_csv(const char *path)
     for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n")) {
         int commas = 0;
         for (const char *c = line; *c; c++) commas += *c == ',';
-        assert_int_equal(commas, 14);
-        compared += !strstr(line, ",,");
+        assert_int_equal(commas, 18);
+        compared += !strstr(line, ",,") && line[strlen(line) - 1] != ',';
     }
     assert_int_equal(compared, 1 + 3);
 }
@@ -218,12 +228,12 @@ static void bench_reports_every_selector(void **state)
     const char *const selectors[] = {"meta", "greedy", "distance", "full", "coarsest"};
     for (int i = 0; i < 5; i++) {
         char arguments[512];
-        snprintf(arguments, sizeof arguments,
-                 "bench city.prom --path city.path --selector %s --budget-ms 20 --frames 12 "
-                 "--warmup 2 --check-holes 3 --check-accuracy 3 --report r.json --csv r.csv "
-                 "--keep-frames kept "
-                 "--every 6 --false-colours" SMALL,
-                 selectors[i]);
+        snprintf(
+            arguments, sizeof arguments,
+            "bench city.prom --path city.path --selector %s --budget-ms 20 --frames 12 "
+            "--warmup 2 --check-holes 3 --check-accuracy 3 --quality-frames 3 --report r.json "
+            "--csv r.csv --keep-frames kept --every 6 --false-colours" SMALL,
+            selectors[i]);
         expect(arguments, 0);
         json_t *report = json_load_file("r.json", 0, NULL);
         assert_int_equal(json_array_size(at(report, "runs")), 1);
@@ -244,22 +254,29 @@ static void full_detail_is_accurate(void **state)
     (void)state;
     NEED_DEVICE();
     expect("bench city.prom --selector full --path city.path --frames 4 --warmup 0 "
-           "--check-holes 4 --check-accuracy 4 --report r.json" SMALL,
+           "--check-holes 4 --check-accuracy 4 --quality-frames 4 --report r.json" SMALL,
            0);
     json_t *report = json_load_file("r.json", 0, NULL);
     json_t *one = json_array_get(at(report, "runs"), 0);
     assert_true(number(one, "holes.max") == 0);
     assert_true(number(one, "accuracy.min") == 1 && number(one, "accuracy.predicted") == 1);
+    assert_true(number(one, "quality.p95") == 0 && number(one, "quality.loss") == 0);
+    // In a street most houses stand behind others, and some are seen.
+    double hidden = number(one, "quality.hidden_nodes");
+    assert_true(hidden > 0 && hidden < 1 && number(one, "quality.hidden_cost") > 0);
     json_decref(report);
     expect("bench city.prom --selector coarsest --path city.path --frames 4 --warmup 0 "
-           "--check-accuracy 2 --report r.json" SMALL,
+           "--check-accuracy 2 --quality-frames 3 --ppd 20 --report r.json" SMALL,
            0);
     assert_non_null(strstr(run.out, "\naccuracy "));
+    assert_non_null(strstr(run.out, "\nquality "));
     report = json_load_file("r.json", 0, NULL);
     one = json_array_get(at(report, "runs"), 0);
     assert_true(json_is_null(at(one, "holes")));
     assert_true(number(one, "accuracy.frames") == 2 && number(one, "accuracy.mean") < 1);
     assert_true(number(one, "accuracy.predicted") < 1);
+    assert_true(number(one, "quality.ppd") == 20 && number(one, "quality.frames") == 3);
+    assert_true(number(one, "quality.mean") > 0 && number(one, "quality.loss") > 0);
     json_decref(report);
 }
 
@@ -273,11 +290,13 @@ static void full_draws_at_least_what_coarsest_draws(void **state)
         char arguments[256];
         snprintf(arguments, sizeof arguments,
                  "bench city.prom --selector %s --path city.path --frames 3 --warmup 0 "
-                 "--report r.json" SMALL,
+                 "--quality-frames 0 --report r.json" SMALL,
                  selectors[i]);
         expect(arguments, 0);
         json_t *report = json_load_file("r.json", 0, NULL);
-        triangles[i] = number(json_array_get(at(report, "runs"), 0), "triangles.mean");
+        json_t *one = json_array_get(at(report, "runs"), 0);
+        triangles[i] = number(one, "triangles.mean");
+        assert_true(json_is_null(at(one, "quality")));
         json_decref(report);
     }
     assert_true(triangles[0] > triangles[1]);

@@ -75,10 +75,13 @@ static void comparisons_count_where_they_were_made(void **state)
 {
     (void)state;
     prom_frame_record records[4] = {
-        {.holes_checked = true, .holes = 0.25},
-        {.accuracy_checked = true, .accuracy = 0.5, .benefit_px = 30, .loss_px = 10},
-        {.accuracy = 0.1, .holes = 0.9, .benefit_px = 1, .loss_px = 9},
-        {.holes_checked = true, .accuracy_checked = true, .accuracy = 0.75}, // nothing in view
+        {.difference = {.found = PROM_COMPARE_HOLES, .holes = 0.25}},
+        {.difference = {.found = PROM_COMPARE_ACCURACY, .accuracy = 0.5},
+         .benefit_px = 30,
+         .loss_px = 10},
+        {.difference = {.accuracy = 0.1, .holes = 0.9}, .benefit_px = 1, .loss_px = 9},
+        {.difference = {.found = PROM_COMPARE_HOLES | PROM_COMPARE_ACCURACY,
+                        .accuracy = 0.75}}, // nothing in view
     };
     prom_run_statistics s = prom_run_statistics_of(records, 4, 10);
     assert_int_equal(s.hole_frames, 2);
@@ -89,7 +92,33 @@ static void comparisons_count_where_they_were_made(void **state)
     NEAR(s.accuracy_min, 0.5);
     NEAR(s.predicted_accuracy, (0.75 + 1.0) / 2);
     s = prom_run_statistics_of(records + 2, 1, 10);
-    assert_int_equal(s.hole_frames + s.accuracy_frames, 0);
+    assert_int_equal(s.hole_frames + s.accuracy_frames + s.quality_frames, 0);
+}
+
+static void quality_is_of_the_compared_frames(void **state)
+{
+    (void)state;
+    prom_frame_record records[4] = {
+        {.difference = {.found = PROM_COMPARE_QUALITY,
+                        .flip = 0.3,
+                        .loss = 0.1,
+                        .hidden_cost = 0.5,
+                        .hidden_nodes = 0.25}},
+        {.difference = {.found = PROM_COMPARE_HOLES, .flip = 9, .loss = 9}},
+        {.difference = {.found = PROM_COMPARE_QUALITY | PROM_COMPARE_HOLES,
+                        .flip = 0.1,
+                        .loss = 0.3,
+                        .hidden_cost = 0.25,
+                        .hidden_nodes = 0.75}},
+        {.difference = {.found = PROM_COMPARE_QUALITY, .flip = 0.2}},
+    };
+    prom_run_statistics s = prom_run_statistics_of(records, 4, 10);
+    assert_int_equal(s.quality_frames, 3);
+    NEAR(s.flip.mean, 0.2);
+    NEAR(s.flip.p95, 0.3);
+    NEAR(s.loss_share, 0.4 / 3);
+    NEAR(s.hidden_cost, 0.25);
+    NEAR(s.hidden_nodes, 1.0 / 3);
 }
 
 int main(void)
@@ -101,6 +130,7 @@ int main(void)
         cmocka_unit_test(misses_are_frames_over_the_budget),
         cmocka_unit_test(predictions_are_compared_with_the_drawing),
         cmocka_unit_test(comparisons_count_where_they_were_made),
+        cmocka_unit_test(quality_is_of_the_compared_frames),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -63,7 +63,7 @@ mean_of() {
 bench() {
     "$program" bench "$model" --path "$path" --resolution "$size" --selector "$2" \
         --budget-ms "$3" --distance-scale "$4" --frames "$5" --check-accuracy "$6" \
-        --report "$out/$1.json" --csv "$out/$1.csv" --quiet > /dev/null
+        --quality-frames "$6" --report "$out/$1.json" --csv "$out/$1.csv" --quiet > /dev/null
 }
 
 # try_scale: sets $time to the mean of `distance` at $scale; called within find_scale.

@@ -39,7 +39,7 @@ mkdir -p "$out"
 bench() {
     echo "$1: $7 frames" >&2
     "$program" bench "$2" --path "$3" --resolution "$4" --selector "$5" --budget-ms "$6" \
-        --frames "$7" --check-holes "$8" --check-accuracy "$8" \
+        --frames "$7" --check-holes "$8" --check-accuracy "$8" --quality-frames "$8" \
         --report "$out/$1.json" --csv "$out/$1.csv" --quiet > "$out/$1.txt"
 }
 
