@@ -15,7 +15,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define PROM_CONTAINER_VERSION 2
+#define PROM_CONTAINER_VERSION 3
 #define PROM_CONTAINER_APPLICATION_ID 0x50524f4d // "PROM"
 #define PROM_CONTAINER_CHUNK_BYTES (64u << 20)
 
@@ -39,7 +39,8 @@ prom_status prom_writer_add_texture(prom_writer *writer, const prom_texture *tex
 // Free-form facts about the build ("source", "settings", ...): text by key; the last one wins.
 prom_status prom_writer_set_meta(prom_writer *writer, const char *key, const char *value,
                                  prom_error *error);
-// A finished stage of the build: content hash of what it made, and its duration.
+// A finished stage of the build: content hash of what it made, and its duration. One of the
+// same name is replaced.
 prom_status prom_writer_add_stage(prom_writer *writer, const char *name, uint64_t content_hash,
                                   double ms, prom_error *error);
 // The tree and its tables; once, after all meshes and textures, whose counts and sizes must be
@@ -55,9 +56,8 @@ prom_status prom_writer_finish(prom_writer *writer, prom_error *error);
 
 // Starts PATH.part as a copy of PATH, a finished container, to change what may change later:
 // view cells (prom_writer_put_view_cells), facts (prom_writer_set_meta) and stages
-// (prom_writer_add_stage, where one of the same name is replaced). PATH stays as it is until
-// prom_writer_finish puts the new file in its place. NULL with *error if PATH is not sound
-// (PROM_ERR_INPUT), or as prom_writer_create.
+// (prom_writer_add_stage). PATH stays as it is until prom_writer_finish puts the new file in
+// its place. NULL with *error if PATH is not sound (PROM_ERR_INPUT), or as prom_writer_create.
 prom_writer *prom_writer_reopen(const char *path, prom_error *error);
 
 // ---- reading

@@ -19,6 +19,12 @@ prom_stream prom_texture_stream(size_t bytes)
     return (prom_stream){PROM_CODEC_ZSTD, 1, bytes};
 }
 
+void prom_view_cell_streams(uint32_t entry_count, prom_stream streams[PROM_VIEW_CELL_STREAMS])
+{
+    streams[0] = (prom_stream){PROM_CODEC_ZSTD, sizeof(uint32_t), entry_count};
+    streams[1] = (prom_stream){PROM_CODEC_ZSTD, sizeof(uint8_t), entry_count};
+}
+
 uint64_t prom_stream_chunk_elements(const prom_stream *stream)
 {
     uint64_t elements = PROM_CONTAINER_CHUNK_BYTES / stream->stride;

@@ -22,6 +22,7 @@ struct prom_container {
     uint32_t mesh_count, texture_count;
     uint64_t bulk_bytes; // that all bulk data take in the file at least
     prom_bulk_ref *meshes, *textures;
+    uint64_t view_cell_bytes; // by prom_container_read_view_cells
 };
 
 // Opens container->path: fd, file_bytes, db.
@@ -61,7 +62,22 @@ prom_status prom_container_check_ids(prom_container *container, prom_table table
 prom_status prom_container_scan(prom_container *container, prom_table table,
                                 void (*take)(void *user, prom_row_in *row), void *user,
                                 prom_error *error);
+// Says that a row is damaged.
+prom_status prom_container_refuse(prom_container *container, const char *table, uint64_t row,
+                                  const char *why, prom_error *error);
 prom_status prom_container_fail_sqlite(prom_container *container, const char *table,
                                        uint64_t row, prom_error *error);
+
+// Streams of bulk data, one after the other from a chunk on, that a row of a table claims.
+// Before memory is taken for them: whether their chunks are there and large enough, and the
+// machine's memory too. stored_bytes: of the chunks, or NULL.
+prom_status prom_container_check_streams(prom_container *container, const char *table,
+                                         uint32_t id, const prom_stream *streams, int count,
+                                         uint64_t first_chunk, uint64_t *stored_bytes,
+                                         prom_error *error);
+// Decodes stream i into out[i].
+prom_status prom_container_decode_streams(prom_container *container, const prom_stream *streams,
+                                          int count, uint64_t first_chunk, void *const *out,
+                                          prom_error *error);
 
 #endif

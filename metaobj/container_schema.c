@@ -81,6 +81,19 @@ const prom_table_schema prom_tables[PROM_TABLE_COUNT] = {
                           "  id INTEGER PRIMARY KEY, name TEXT NOT NULL,\n"
                           "  content_hash INTEGER NOT NULL, ms REAL NOT NULL) STRICT",
                           "id,name,content_hash"},
+    [PROM_TABLE_VIEW_GRID] =
+        {"view_grid",
+         "CREATE TABLE view_grid(\n"
+         "  id INTEGER PRIMARY KEY, origin_x REAL NOT NULL, origin_y REAL NOT NULL,\n"
+         "  origin_z REAL NOT NULL, size REAL NOT NULL, content_hash INTEGER NOT NULL,\n"
+         "  first_chunk INTEGER NOT NULL) STRICT",
+         "id,origin_x,origin_y,origin_z,size,content_hash"},
+    [PROM_TABLE_VIEW_CELL] =
+        {"view_cell",
+         "CREATE TABLE view_cell(\n"
+         "  id INTEGER PRIMARY KEY, x INTEGER NOT NULL, y INTEGER NOT NULL,\n"
+         "  z INTEGER NOT NULL, leaf_count INTEGER NOT NULL) STRICT",
+         NULL},
     [PROM_TABLE_ROWS] = {"table_rows",
                          "CREATE TABLE table_rows(\n"
                          "  id INTEGER PRIMARY KEY, name TEXT NOT NULL,\n"

@@ -66,11 +66,9 @@ static void unlink_journal(const char *part_path)
     prom_free(journal);
 }
 
-static prom_status open_database(prom_writer *w, prom_error *error)
+prom_status prom_writer_open_database(prom_writer *writer, prom_error *error)
 {
-    // Only now, under the lock, is a leftover known to belong to nobody.
-    unlink_journal(w->part_path);
-    if (ftruncate(w->lock_fd, 0)) return prom_writer_fail_errno(w, errno, error);
+    prom_writer *w = writer;
     char *name = prom_sqlite_path(w->part_path);
     int rc = sqlite3_open_v2(name, &w->db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, NULL);
     prom_free(name);
@@ -81,13 +79,18 @@ static prom_status open_database(prom_writer *w, prom_error *error)
              "PRAGMA application_id=%d; PRAGMA user_version=%d;",
              PROM_CONTAINER_APPLICATION_ID, PROM_CONTAINER_VERSION);
     prom_status status = prom_writer_exec(w, setup, error);
-    if (!status) status = prom_writer_exec(w, "BEGIN", error);
+    return status ? status : prom_writer_exec(w, "BEGIN", error);
+}
+
+static prom_status create_tables(prom_writer *w, prom_error *error)
+{
+    prom_status status = PROM_OK;
     for (int t = 0; t < PROM_TABLE_COUNT && !status; t++)
         status = prom_writer_exec(w, prom_tables[t].create, error);
     return status;
 }
 
-prom_writer *prom_writer_create(const char *path, prom_error *error)
+prom_writer *prom_writer_start(const char *path, prom_error *error)
 {
     struct stat existing;
     if (!*path || (!stat(path, &existing) && !S_ISREG(existing.st_mode))) {
@@ -98,11 +101,21 @@ prom_writer *prom_writer_create(const char *path, prom_error *error)
     w->path = prom_strdup(path);
     w->part_path = prom_format("%s.part", path);
     w->lock_fd = -1;
-    if (lock_part(w, error) || open_database(w, error)) {
-        prom_writer_destroy(w);
-        return NULL;
-    }
-    return w;
+    prom_status status = lock_part(w, error);
+    // Only now, under the lock, is a leftover known to belong to nobody.
+    if (!status) unlink_journal(w->part_path);
+    if (!status && ftruncate(w->lock_fd, 0)) status = prom_writer_fail_errno(w, errno, error);
+    if (!status) return w;
+    prom_writer_destroy(w);
+    return NULL;
+}
+
+prom_writer *prom_writer_create(const char *path, prom_error *error)
+{
+    prom_writer *w = prom_writer_start(path, error);
+    if (w && !prom_writer_open_database(w, error) && !create_tables(w, error)) return w;
+    prom_writer_destroy(w);
+    return NULL;
 }
 
 static void close_database(prom_writer *w)
@@ -152,15 +165,38 @@ prom_status prom_writer_set_meta(prom_writer *writer, const char *key, const cha
     return PROM_OK;
 }
 
+static prom_status replace_stage(prom_writer *w, const char *name, uint64_t content_hash,
+                                 double ms, bool *replaced, prom_error *error)
+{
+    sqlite3_stmt *update;
+    const char *sql = "UPDATE stage SET content_hash=?2,ms=?3 WHERE name=?1";
+    *replaced = false;
+    if (sqlite3_prepare_v2(w->db, sql, -1, &update, NULL) != SQLITE_OK)
+        return prom_writer_fail(w, error);
+    sqlite3_bind_text(update, 1, name, -1, SQLITE_STATIC);
+    sqlite3_bind_int64(update, 2, (int64_t)content_hash);
+    sqlite3_bind_double(update, 3, ms);
+    prom_status status =
+        sqlite3_step(update) == SQLITE_DONE ? PROM_OK : prom_writer_fail(w, error);
+    *replaced = sqlite3_changes(w->db) > 0;
+    sqlite3_finalize(update);
+    return status;
+}
+
 prom_status prom_writer_add_stage(prom_writer *writer, const char *name, uint64_t content_hash,
                                   double ms, prom_error *error)
 {
     if (prom_writer_ready(writer, error)) return PROM_ERR_OUTPUT;
-    prom_row_out row = prom_row_begin(writer, PROM_TABLE_STAGE);
-    prom_put_text(&row, name);
-    prom_put_int(&row, (int64_t)content_hash);
-    prom_put_real(&row, isfinite(ms) ? ms : 0);
-    prom_status status = prom_row_end(&row, error);
+    if (!isfinite(ms)) ms = 0;
+    bool replaced;
+    prom_status status = replace_stage(writer, name, content_hash, ms, &replaced, error);
+    if (!status && !replaced) {
+        prom_row_out row = prom_row_begin(writer, PROM_TABLE_STAGE);
+        prom_put_text(&row, name);
+        prom_put_int(&row, (int64_t)content_hash);
+        prom_put_real(&row, ms);
+        status = prom_row_end(&row, error);
+    }
     return status ? status : prom_writer_exec(writer, "COMMIT; BEGIN", error);
 }
 

@@ -46,6 +46,17 @@ prom_status prom_writer_exec(prom_writer *writer, const char *sql, prom_error *e
 // Say what went wrong, SQLite's last error or an errno; nothing is written from then on.
 prom_status prom_writer_fail(prom_writer *writer, prom_error *error);
 prom_status prom_writer_fail_errno(prom_writer *writer, int number, prom_error *error);
+// Locks PATH.part, empty, for a writer that has no database open yet; NULL with *error if it
+// cannot.
+prom_writer *prom_writer_start(const char *path, prom_error *error);
+// Opens what PATH.part holds and begins a transaction.
+prom_status prom_writer_open_database(prom_writer *writer, prom_error *error);
+// Appends the chunks of a stream.
+prom_status prom_writer_add_stream(prom_writer *writer, const prom_stream *stream,
+                                   const void *data, prom_error *error);
+// The first value of the first row that a query gives; `otherwise` where there is none.
+prom_status prom_writer_query(prom_writer *writer, const char *sql, int64_t otherwise,
+                              int64_t *value, prom_error *error);
 // PROM_OK unless an earlier write failed.
 prom_status prom_writer_ready(prom_writer *writer, prom_error *error);
 

@@ -19,9 +19,10 @@ static prom_status refuse_late(prom_writer *w, const char *what, prom_error *err
                      what);
 }
 
-static prom_status add_stream(prom_writer *w, const prom_stream *stream, const void *data,
-                              prom_error *error)
+prom_status prom_writer_add_stream(prom_writer *writer, const prom_stream *stream,
+                                   const void *data, prom_error *error)
 {
+    prom_writer *w = writer;
     const uint8_t *bytes = data;
     for (uint64_t i = 0; i < prom_stream_chunks(stream); i++) {
         uint64_t count = prom_stream_chunk_count(stream, i);
@@ -66,7 +67,7 @@ prom_status prom_writer_add_mesh(prom_writer *writer, const prom_mesh *mesh, uin
     const void *data[PROM_MESH_STREAMS] = {mesh->vertices, mesh->indices, mesh->submeshes};
     prom_status status = PROM_OK;
     for (int s = 0; s < PROM_MESH_STREAMS && !status; s++)
-        status = add_stream(writer, &streams[s], data[s], error);
+        status = prom_writer_add_stream(writer, &streams[s], data[s], error);
     if (status) return status;
     prom_row_out row = prom_row_begin(writer, PROM_TABLE_MESH);
     prom_put_int(&row, info.vertex_count);
@@ -96,7 +97,7 @@ prom_status prom_writer_add_texture(prom_writer *writer, const prom_texture *tex
             texture->height, texture->layers, texture->levels);
     uint64_t first_chunk = writer->rows[PROM_TABLE_CHUNK];
     prom_stream stream = prom_texture_stream(bytes);
-    prom_status status = add_stream(writer, &stream, texture->pixels, error);
+    prom_status status = prom_writer_add_stream(writer, &stream, texture->pixels, error);
     if (status) return status;
     prom_row_out row = prom_row_begin(writer, PROM_TABLE_TEXTURE);
     prom_put_int(&row, texture->kind);

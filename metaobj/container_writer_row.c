@@ -72,6 +72,21 @@ prom_status prom_writer_exec(prom_writer *writer, const char *sql, prom_error *e
     return PROM_OK;
 }
 
+prom_status prom_writer_query(prom_writer *writer, const char *sql, int64_t otherwise,
+                              int64_t *value, prom_error *error)
+{
+    sqlite3_stmt *statement;
+    *value = otherwise;
+    if (sqlite3_prepare_v2(writer->db, sql, -1, &statement, NULL) != SQLITE_OK)
+        return prom_writer_fail(writer, error);
+    int rc = sqlite3_step(statement);
+    if (rc == SQLITE_ROW) *value = sqlite3_column_int64(statement, 0);
+    prom_status status = PROM_OK;
+    if (rc != SQLITE_ROW && rc != SQLITE_DONE) status = prom_writer_fail(writer, error);
+    sqlite3_finalize(statement);
+    return status;
+}
+
 static int column_count(const char *create)
 {
     int commas = 0;

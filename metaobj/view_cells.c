@@ -1,6 +1,11 @@
 #include "metaobj/view_cells.h"
 
+#include "metaobj/base/hash.h"
+
+#include <assert.h>
 #include <math.h>
+
+static_assert(sizeof(prom_view_cell) == 20, "hashed as it is: no padding");
 
 // As prom_model_check bounds the world.
 #define EXTENT_MAX 1e18
@@ -61,14 +66,25 @@ float prom_view_share_decode(uint8_t code)
     return exp2f((float)(code - 255) / 16.0f);
 }
 
+uint64_t prom_view_cells_hash(const prom_view_cells *cells, uint64_t seed)
+{
+    double grid[4] = {0, 0, 0, cells->size};
+    for (int a = 0; a < 3; a++) grid[a] += cells->origin[a]; // -0 becomes 0
+    seed = prom_hash(grid, sizeof grid, seed);
+    seed = prom_hash(cells->cells, cells->cell_count * sizeof *cells->cells, seed);
+    seed = prom_hash(cells->leaves, cells->entry_count * sizeof *cells->leaves, seed);
+    return prom_hash(cells->shares, cells->entry_count * sizeof *cells->shares, seed);
+}
+
 static const char *check_leaves(const prom_view_cells *cells, const prom_view_cell *cell,
                                 const prom_model *model)
 {
-    const uint32_t *leaves = cells->leaves + cell->first;
-    for (uint32_t i = 0; i < cell->count; i++) {
+    const uint32_t *leaves = cells->leaves;
+    for (uint32_t i = cell->first; i < cell->first + cell->count; i++) {
         if (leaves[i] >= model->tree_count) return "a view cell's leaf is no node of the tree";
         if (model->child_count[leaves[i]]) return "a view cell's leaf has children";
-        if (i && leaves[i] <= leaves[i - 1]) return "a view cell's leaves do not ascend";
+        if (i > cell->first && leaves[i] <= leaves[i - 1])
+            return "a view cell's leaves do not ascend";
     }
     return NULL;
 }

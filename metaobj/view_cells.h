@@ -6,6 +6,9 @@
 #include "metaobj/base/status.h"
 #include "metaobj/model.h"
 
+#include <stdbool.h>
+#include <stdint.h>
+
 typedef struct prom_view_cell {
     int32_t at[3];         // the cube origin + size * [at, at + 1)
     uint32_t first, count; // into leaves and shares; first is where the cell before ends
@@ -35,6 +38,8 @@ const prom_view_cell *prom_view_cells_at(const prom_view_cells *cells, const dou
 uint8_t prom_view_share_encode(double share);
 float prom_view_share_decode(uint8_t code);
 
+// Hash of all that the cells say, chained from `seed`.
+uint64_t prom_view_cells_hash(const prom_view_cells *cells, uint64_t seed);
 // NULL if size and origin are finite, cells in order, their ranges without gaps up to
 // entry_count, and each cell's leaves ascending and leaves of the tree; else a literal. The
 // index of the offending cell goes to *cell. Of the model: tree_count and child_count.

@@ -76,6 +76,11 @@ static inline void damage_init(damage *d)
     if (!status) status = prom_writer_set_meta(w, "settings", "none", &error);
     if (!status) status = prom_writer_add_stage(w, "all", 7, 1, &error);
     if (!status) status = prom_writer_put_model(w, &m, &error);
+    prom_view_cells cells;
+    uint32_t cell_seed = 6;
+    fixture_view_cells(&cells, &m, 40, &cell_seed);
+    if (!status) status = prom_writer_put_view_cells(w, &cells, &error);
+    prom_view_cells_finish(&cells);
     if (!status) status = prom_writer_finish(w, &error);
     if (!status) status = fixture_read_hash(d->path, &d->content_hash, &error);
     if (status) print_error("%s\n", error.text);

@@ -15,6 +15,7 @@ typedef struct fixture {
     prom_model model;
     prom_mesh meshes[FIXTURE_MESHES];
     prom_texture textures[FIXTURE_TEXTURES];
+    prom_view_cells cells;
 } fixture;
 
 static inline uint32_t fixture_random(uint32_t *state)
@@ -183,6 +184,30 @@ static inline void fixture_nodes(prom_model *m, uint32_t clusters, uint32_t leav
     prom_model_update_bounds(m);
 }
 
+// `count` cubes, four in a row and some left out between rows, each with about half of the
+// tree's leaves.
+static inline void fixture_view_cells(prom_view_cells *cells, const prom_model *m,
+                                      uint32_t count, uint32_t *seed)
+{
+    PROM_ARRAY(uint32_t) leaves = {0};
+    *cells = (prom_view_cells){.origin = {-1e3, 0.25, 7}, .size = 2.5, .cell_count = count};
+    cells->cells = prom_calloc(count, sizeof *cells->cells);
+    for (uint32_t i = 0; i < count; i++) {
+        prom_view_cell *c = &cells->cells[i];
+        *c = (prom_view_cell){{(int32_t)(i % 4) - 2, 0, (int32_t)(i / 4) * 3 - 5}, 0, 0};
+        c->first = (uint32_t)leaves.count;
+        for (uint32_t n = 0; n < m->tree_count; n++)
+            if (!m->child_count[n] && fixture_random(seed) % 2) prom_array_push(&leaves, n);
+        c->count = (uint32_t)leaves.count - c->first;
+    }
+    cells->entry_count = (uint32_t)leaves.count;
+    prom_array_reserve(&leaves, 1);
+    cells->leaves = leaves.data;
+    cells->shares = prom_alloc(leaves.count, 1);
+    for (size_t i = 0; i < leaves.count; i++)
+        cells->shares[i] = (uint8_t)(fixture_random(seed) % 256);
+}
+
 static inline void fixture_init(fixture *f, uint32_t clusters, uint32_t leaves)
 {
     uint32_t seed = 7;
@@ -190,10 +215,12 @@ static inline void fixture_init(fixture *f, uint32_t clusters, uint32_t leaves)
     fixture_bulk(f, &seed);
     fixture_prototypes(&f->model, clusters, leaves, &seed);
     fixture_nodes(&f->model, clusters, leaves);
+    fixture_view_cells(&f->cells, &f->model, 12, &seed);
 }
 
 static inline void fixture_finish(fixture *f)
 {
+    prom_view_cells_finish(&f->cells);
     for (int i = 0; i < FIXTURE_MESHES; i++) prom_mesh_finish(&f->meshes[i]);
     for (int i = 0; i < FIXTURE_TEXTURES; i++) prom_texture_finish(&f->textures[i]);
     prom_model_finish(&f->model);
@@ -214,6 +241,7 @@ static inline prom_status fixture_write(const fixture *f, const char *path, doub
     if (!status)
         status = prom_writer_add_stage(w, "import", 0xfedcba9876543210u, stage_ms, error);
     if (!status) status = prom_writer_put_model(w, &f->model, error);
+    if (!status) status = prom_writer_put_view_cells(w, &f->cells, error);
     if (!status) status = prom_writer_finish(w, error);
     prom_writer_destroy(w);
     return status;
@@ -242,6 +270,9 @@ static inline prom_status fixture_read_hash(const char *path, uint64_t *hash, pr
         status = prom_container_read_texture(c, &m, i, &texture, error);
         prom_texture_finish(&texture);
     }
+    prom_view_cells cells = {0};
+    if (!status) status = prom_container_read_view_cells(c, &m, &cells, error);
+    prom_view_cells_finish(&cells);
     if (!status) status = prom_container_stages(c, fixture_ignore_stage, NULL, error);
     if (!status) status = prom_container_content_hash(c, hash, error);
     prom_model_finish(&m);

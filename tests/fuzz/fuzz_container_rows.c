@@ -321,6 +321,9 @@ void fuzz_seeds(void (*each)(void *user, const char *name, const void *bytes, si
         {6, PROM_TABLE_REPRESENTATION, 2, 2, 2, 0, 7},
         {7, PROM_TABLE_TEXTURE, 0, 2, 2, 32, 0},
         {4, PROM_TABLE_ROWS, 3, 2, 1, 11},
+        {5, PROM_TABLE_VIEW_CELL, 3, 4, 1, 9},     // a cell of 2^32 leaves
+        {6, PROM_TABLE_VIEW_GRID, 0, 6, 2, 0, 1},  // the cells' first chunk
+        {2, PROM_TABLE_CHUNK, 14, 0, 0, 0, 20, 1}, // a byte of the cells' leaves
     };
     each(user, "none", "", 0);
     for (size_t i = 0; i < sizeof seeds / sizeof *seeds; i++) {

@@ -43,6 +43,15 @@ static inline bool fuzz_read_bulk(prom_container *c, const prom_model *m, const 
         if (!status) fuzz_check(prom_texture_bytes(&texture) > 0);
         prom_texture_finish(&texture);
     }
+    prom_error error = {0};
+    prom_view_cells cells;
+    prom_status status = prom_container_read_view_cells(c, m, &cells, &error);
+    all &= fuzz_expect(status, &error, path);
+    if (!status) {
+        uint64_t cell;
+        fuzz_check(!prom_view_cells_check(&cells, m, &cell));
+    }
+    prom_view_cells_finish(&cells);
     return all;
 }
 
