@@ -5,8 +5,8 @@
 
 #include <math.h>
 
-// A counted share counts for half as much as before once the eye has moved by this part of the
-// distance to what it sees: by then other things are hidden. By taste.
+// A counted share counts for half as much once the eye has moved by this part of the distance
+// to what it sees: by then other things are hidden. A quarter of that changes little. By taste.
 #define HALF_MOVE 0.5f
 // Pixels of a footprint in which a counting that found nothing is believed at once: fewer are
 // seldom met by the samples.
@@ -96,7 +96,7 @@ static void begin_sums(prom_visibility *v)
 
 static float clamp_share(float share)
 {
-    return fminf(fmaxf(share, PROM_VISIBILITY_LEAST), 1.0f);
+    return fminf(fmaxf(share, PROM_VISIBILITY_LEAST), PROM_VISIBILITY_MOST);
 }
 
 // ---- cells
@@ -150,7 +150,7 @@ static float prior_of(const prom_visibility *v, uint32_t node)
 {
     if (!v->cell) return 1.0f;
     const node_state *n = &v->nodes[node];
-    return n->cell == v->cell_visit ? clamp_share(n->prior) : PROM_VISIBILITY_LEAST;
+    return n->cell == v->cell_visit ? fminf(n->prior, 1.0f) : PROM_VISIBILITY_LEAST;
 }
 
 // ---- counts
@@ -174,8 +174,15 @@ float prom_visibility_share(const prom_visibility *visibility, uint32_t node)
     const node_state *n = &visibility->nodes[node];
     float prior = prior_of(visibility, node);
     if (!n->counted) return prior;
-    float weight = exp2f((n->moved - visibility->odometer) / HALF_MOVE);
+    float moved = (visibility->odometer - n->moved) / HALF_MOVE;
+    float weight = exp2f(-moved * moved);
     return prior + (n->share - prior) * weight;
+}
+
+// What was counted last, wherever that was.
+static float last_share(const prom_visibility *v, uint32_t node)
+{
+    return v->nodes[node].counted ? v->nodes[node].share : prior_of(v, node);
 }
 
 static void settle(prom_visibility *v, uint32_t node)
@@ -184,7 +191,7 @@ static void settle(prom_visibility *v, uint32_t node)
     node_state *n = &v->nodes[node];
     if (!(sum->footprint_px > LEAST_PX)) return;
     float now = clamp_share(sum->px / sum->footprint_px);
-    float before = prom_visibility_share(v, node);
+    float before = last_share(v, node);
     if (now < before) {
         float most = !n->counted ? 1.0f : sum->px > 0.0f ? FALL : FALL_TO_NOTHING;
         float belief = fminf(sum->footprint_px / SURE_PX, most);
@@ -214,8 +221,8 @@ void prom_visibility_feed(prom_visibility *visibility, const prom_visible_count 
     begin_sums(v);
     for (size_t i = 0; i < count; i++) {
         const prom_cut_entry *e = &counts[i].entry;
-        float px = counts[i].px >= 0.0f ? counts[i].px
-                                        : prom_visibility_share(v, e->node) * e->footprint_px;
+        float px =
+            counts[i].px >= 0.0f ? counts[i].px : last_share(v, e->node) * e->footprint_px;
         add_upwards(v, e->node, px, e->footprint_px);
     }
     for (uint32_t i = 0; i < v->touched_count; i++) settle(v, v->touched[i]);

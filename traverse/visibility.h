@@ -1,8 +1,8 @@
 // Visibility: of each node, the share of its footprint that is not hidden behind others, from
 // what earlier frames have shown and, where the model has them, from view cells.
 //
-//   every frame: prom_visibility_begin with its camera, select a cut with the visibility, draw;
-//   when the counts of a drawn frame are known: prom_visibility_feed.
+//   every frame: prom_visibility_begin with its camera, prom_visibility_feed with what has been
+//   counted of earlier frames, select a cut with the visibility, draw
 //
 // Plain arrays in, no GL: any renderer that can count pixels per drawn node can feed it. Memory
 // is allocated once; the work of a call grows with the cut, that of entering a cell with what
@@ -16,6 +16,8 @@
 
 // No share is smaller: of a full screen less than a pixel.
 #define PROM_VISIBILITY_LEAST (1.0f / (1 << 20))
+// Nor larger. Footprints are estimates: of some nodes more shows than they promise.
+#define PROM_VISIBILITY_MOST 4.0f
 
 typedef struct prom_visibility prom_visibility;
 
@@ -33,12 +35,14 @@ typedef struct prom_visible_count {
     prom_cut_entry entry; // as the selector gave it
     float px;             // visible pixels; below 0: they were not counted
 } prom_visible_count;
-// The counts of a whole cut, of the frame begun last or a few before it. Nodes above the
-// entries get the sums; nodes below keep what they had, and share in their ancestor's pixels.
+// The counts of a whole cut, drawn a frame or a few before the one that has begun; they are
+// taken as if they were of this one. Nodes above the entries get the sums; nodes below keep what
+// they had, and share in their ancestor's pixels.
 void prom_visibility_feed(prom_visibility *visibility, const prom_visible_count *counts,
                           size_t count);
 
-// Share of a node's footprint that shows, in [PROM_VISIBILITY_LEAST, 1].
+// Visible pixels of a node against those of its footprint as the selectors estimate it, in
+// [PROM_VISIBILITY_LEAST, PROM_VISIBILITY_MOST]; 1 where nothing is known.
 float prom_visibility_share(const prom_visibility *visibility, uint32_t node);
 // As if nothing had been seen: after a jump, or when the pictures changed their size.
 void prom_visibility_forget(prom_visibility *visibility);
