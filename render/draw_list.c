@@ -4,13 +4,14 @@
 #include <math.h>
 #include <string.h>
 
-// The sort key, from the top: phase 2 bits, slice 3, state 21 (and room), depth 16 for what is
+// The sort key, from the top: phase 2 bits, slice 4, state 21 (and room), depth 16 for what is
 // drawn opaque; phase 2, falling depth 32 for what is blended.
 #define PHASE_SHIFT 62
-#define SLICE_SHIFT 59
+#define SLICE_SHIFT 58
 #define STATE_SHIFT 16
 #define BLENDED_DEPTH_SHIFT 16
 #define SLICES 8
+#define HIDDEN_SLICE SLICES // after all of them
 // Depths below this part of the greatest share the nearest slice: the eye often stands on
 // something, and that should not stretch the slices of all the rest.
 #define MIN_DEPTH_RATIO (1.0f / 4096.0f)
@@ -151,8 +152,9 @@ static depth_slices find_slices(const prom_draw_list *list)
 {
     float near = INFINITY, far = 0;
     for (size_t i = 0; i < list->items.count; i++) {
-        float depth = list->items.data[i].depth;
-        if (list->items.data[i].background || !isfinite(depth)) continue;
+        const prom_draw_item *item = &list->items.data[i];
+        float depth = item->depth;
+        if (item->background || item->hidden || !isfinite(depth)) continue;
         if (depth < near) near = depth;
         if (depth > far) far = depth;
     }
@@ -161,10 +163,11 @@ static depth_slices find_slices(const prom_draw_list *list)
     return (depth_slices){near, (float)SLICES / log2f(far / near)};
 }
 
-static uint64_t slice_of(const depth_slices *slices, float depth)
+static uint64_t slice_of(const depth_slices *slices, const prom_draw_item *item)
 {
-    if (!(depth > slices->min)) return 0;
-    float slice = log2f(depth / slices->min) * slices->scale;
+    if (item->hidden) return HIDDEN_SLICE;
+    if (!(item->depth > slices->min)) return 0;
+    float slice = log2f(item->depth / slices->min) * slices->scale;
     return slice < SLICES - 1 ? (uint64_t)slice : SLICES - 1;
 }
 
@@ -183,13 +186,14 @@ static uint64_t state_bits(const draw_state *s)
            (uint64_t)s->mirrored << 16 | s->pool;
 }
 
-static uint64_t key_of(const draw_state *s, const depth_slices *slices, float depth)
+static uint64_t key_of(const draw_state *s, const depth_slices *slices,
+                       const prom_draw_item *item)
 {
     uint64_t key = (uint64_t)s->phase << PHASE_SHIFT;
-    uint32_t bits = depth_bits(depth);
+    uint32_t bits = depth_bits(item->depth);
     if (s->phase == PHASE_BLENDED || s->phase == PHASE_BACKGROUND_BLENDED)
         return key | (uint64_t)(uint32_t)~bits << BLENDED_DEPTH_SHIFT;
-    if (s->phase == PHASE_OPAQUE) key |= slice_of(slices, depth) << SLICE_SHIFT;
+    if (s->phase == PHASE_OPAQUE) key |= slice_of(slices, item) << SLICE_SHIFT;
     return key | state_bits(s) << STATE_SHIFT | bits >> 16;
 }
 
@@ -238,11 +242,10 @@ static void collect_entries(prom_draw_list *list)
         for (uint32_t s = 0; s < mesh->submesh_count; s++) {
             uint32_t submesh = mesh->first_submesh + s;
             draw_state state = state_of(r, item, &r->meshes.submeshes.data[submesh]);
-            prom_array_push(&list->entries,
-                            (sort_entry){.key = key_of(&state, &slices, item->depth),
-                                         .item = i,
-                                         .submesh = submesh,
-                                         .state = state});
+            prom_array_push(&list->entries, (sort_entry){.key = key_of(&state, &slices, item),
+                                                         .item = i,
+                                                         .submesh = submesh,
+                                                         .state = state});
         }
     }
 }

@@ -1,5 +1,6 @@
 // Frames of a model: from a cut and a camera to a draw list.
 #include "render/renderer_private.h"
+#include "render/target.h"
 
 #include <assert.h>
 #include <math.h>
@@ -51,19 +52,20 @@ static void tint_of(const prom_representation *rep, bool cluster, uint8_t tint[4
 
 // ---- the list
 
-static void add_node(prom_draw_list *list, const prom_model *model, uint32_t node,
-                     uint32_t rep_index, float depth, const prom_camera *camera,
-                     const prom_frame_options *options)
+static void add_node(prom_draw_list *list, const prom_model *model, const prom_cut_entry *entry,
+                     const prom_camera *camera, const prom_frame_options *options)
 {
-    const prom_representation *rep = &model->reps[rep_index];
+    uint32_t node = entry->node;
+    const prom_representation *rep = &model->reps[entry->rep];
     const prom_placement *placement = &model->placement[node];
     prom_draw_item item = {
         .mesh = rep->mesh,
         .texture = rep->texture,
         .flags = rep->flags,
         .id = node,
-        .depth = depth,
+        .depth = entry->depth,
         .background = node >= model->tree_count,
+        .hidden = entry->visible_px < PROM_HIDDEN_SHARE * entry->footprint_px,
     };
     for (int i = 0; i < 3; i++) item.origin[i] = (float)(placement->origin[i] - camera->eye[i]);
     memcpy(item.basis, placement->basis, sizeof item.basis);
@@ -88,7 +90,9 @@ static void add_background(prom_draw_list *list, const prom_model *model,
         for (uint32_t i = 0; i < p->rep_count; i++) {
             uint32_t rep = p->first_rep + i;
             if (model->reps[rep].kind != PROM_REP_MESH) continue;
-            add_node(list, model, node, rep, (float)sqrt(square), camera, options);
+            const prom_cut_entry entry = {
+                .node = node, .rep = rep, .depth = (float)sqrt(square)};
+            add_node(list, model, &entry, camera, options);
             break;
         }
     }
@@ -103,10 +107,8 @@ void prom_renderer_draw_frame(prom_renderer *renderer, prom_draw_list *list,
     static const prom_frame_options defaults = {0};
     if (!options) options = &defaults;
     prom_draw_list_reset(list);
-    for (size_t i = 0; i < cut->entries.count; i++) {
-        const prom_cut_entry *e = &cut->entries.data[i];
-        add_node(list, model, e->node, e->rep, e->depth, camera, options);
-    }
+    for (size_t i = 0; i < cut->entries.count; i++)
+        add_node(list, model, &cut->entries.data[i], camera, options);
     if (!options->no_background) add_background(list, model, camera, options);
     prom_draw_list_prepare(list);
     prom_pass pass = {.width = camera->width,
@@ -115,6 +117,6 @@ void prom_renderer_draw_frame(prom_renderer *renderer, prom_draw_list *list,
                       .ids = options->ids,
                       .wireframe = options->wireframe};
     prom_camera_projection(camera, pass.projection);
-    prom_target_clear(target, prom_sky_color);
+    target_clear(target, prom_sky_color, options->ids != PROM_IDS_NONE);
     prom_draw_list_submit(list, target, &pass);
 }

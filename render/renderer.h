@@ -62,6 +62,7 @@ typedef enum prom_ids {
     PROM_IDS_ALL = 0, // blended over opaque
     PROM_IDS_OPAQUE,  // what is blended writes none: what it covers can be seen through it
     PROM_IDS_BLENDED, // only what is blended, where nothing opaque is before it
+    PROM_IDS_NONE,    // nobody's: as fast as a target without, whose ids stay as they were
 } prom_ids;
 
 typedef struct prom_draw_item {
@@ -74,6 +75,7 @@ typedef struct prom_draw_item {
     float basis[9];   // column-major
     float depth;      // draw order: ascending, blended ones descending
     bool background;  // behind everything else, whatever its depth
+    bool hidden;      // not expected to show: drawn after all opaque ones that are
 } prom_draw_item;
 
 typedef struct prom_draw_list prom_draw_list;
@@ -83,7 +85,8 @@ void prom_draw_list_destroy(prom_draw_list *list);
 void prom_draw_list_reset(prom_draw_list *list);
 void prom_draw_list_add(prom_draw_list *list, const prom_draw_item *item);
 // Sorts and uploads the commands: opaque front to back in depth slices, grouped by state within
-// a slice; then the background; then blended back to front. Call once before submitting.
+// a slice; what is hidden; then the background; then blended back to front. Call once before
+// submitting.
 void prom_draw_list_prepare(prom_draw_list *list);
 // Whether a prepared list has something blended, the background aside.
 bool prom_draw_list_has_blended(const prom_draw_list *list);
@@ -121,6 +124,10 @@ typedef struct prom_frame_options {
     bool wireframe;
     bool no_background;
 } prom_frame_options;
+
+// An entry of a cut counts as hidden when less than this share of its footprint is expected to
+// show. Chosen by taste: what is wrong about it costs time only, and little.
+#define PROM_HIDDEN_SHARE 0.01f
 
 // Draws the cut and the background layer of a loaded model from a camera: fills the list,
 // clears the target with the sky colour (alpha 0), submits. Does not wait.

@@ -10,6 +10,7 @@ typedef struct submission {
     const prom_target *target;
     const prom_pass *pass;
     look look;
+    bool ids; // are written, by some
     float eye[4];
 } submission;
 
@@ -47,7 +48,7 @@ static void find_eye(const prom_pass *pass, float eye[4])
 
 static void use_program(const submission *s, pipeline p)
 {
-    program *chosen = programs_get(&s->renderer->programs, p, s->look, s->target->has_ids);
+    program *chosen = programs_get(&s->renderer->programs, p, s->look, s->ids);
     glUseProgram(chosen->name);
     if (chosen->submit == s->renderer->submits) return;
     chosen->submit = s->renderer->submits;
@@ -71,6 +72,11 @@ static void set_switch(GLenum what, bool on)
         glEnable(what);
     else
         glDisable(what);
+}
+
+static void bind_framebuffer(const submission *s)
+{
+    glBindFramebuffer(GL_FRAMEBUFFER, s->ids ? s->target->framebuffer : s->target->plain);
 }
 
 static void draw_run_as(const submission *s, const draw_run *run, pipeline p)
@@ -101,9 +107,9 @@ static void draw_blended(const submission *s, size_t first, size_t last, bool ba
         glDisable(GL_BLEND);
         // Mesa refuses to draw to two attachments as long as the factors name a second source.
         glBlendFunc(GL_ONE, GL_ZERO);
-        glBindFramebuffer(GL_FRAMEBUFFER, s->target->framebuffer);
+        bind_framebuffer(s);
     }
-    bool needs_ids = s->target->has_ids && !background && s->pass->ids != PROM_IDS_OPAQUE;
+    bool needs_ids = s->ids && !background && s->pass->ids != PROM_IDS_OPAQUE;
     if (!blends || needs_ids) {
         glColorMaski(0, !blends, !blends, !blends, !blends && !background);
         glColorMaski(1, needs_ids, needs_ids, needs_ids, needs_ids);
@@ -142,7 +148,7 @@ static void draw_phase(const submission *s, phase which, size_t first, size_t la
 static void set_common_state(const submission *s)
 {
     const prom_renderer *r = s->renderer;
-    glBindFramebuffer(GL_FRAMEBUFFER, s->target->framebuffer);
+    bind_framebuffer(s);
     glViewport((GLint)s->pass->x, (GLint)s->pass->y, (GLsizei)s->pass->width,
                (GLsizei)s->pass->height);
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
@@ -178,7 +184,8 @@ void prom_draw_list_submit(prom_draw_list *list, prom_target *target, const prom
                     .list = list,
                     .target = target,
                     .pass = pass,
-                    .look = look_of_output(pass->output)};
+                    .look = look_of_output(pass->output),
+                    .ids = target->has_ids && pass->ids != PROM_IDS_NONE};
     list->renderer->submits++;
     find_eye(pass, s.eye);
     set_common_state(&s);

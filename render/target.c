@@ -15,6 +15,17 @@ static GLuint make_renderbuffer(GLenum format, uint32_t width, uint32_t height)
     return name;
 }
 
+// A texture, so that shaders can read it; integers allow no filter but the nearest.
+static GLuint make_id_texture(uint32_t width, uint32_t height)
+{
+    GLuint name;
+    glCreateTextures(GL_TEXTURE_2D, 1, &name);
+    glTextureStorage2D(name, 1, GL_R32UI, (GLsizei)width, (GLsizei)height);
+    glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    return name;
+}
+
 static GLuint make_framebuffer(const prom_target *t, bool with_ids)
 {
     static const GLenum buffers[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
@@ -22,8 +33,7 @@ static GLuint make_framebuffer(const prom_target *t, bool with_ids)
     glCreateFramebuffers(1, &name);
     glNamedFramebufferRenderbuffer(name, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, t->color);
     glNamedFramebufferRenderbuffer(name, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, t->depth);
-    if (with_ids)
-        glNamedFramebufferRenderbuffer(name, GL_COLOR_ATTACHMENT1, GL_RENDERBUFFER, t->ids);
+    if (with_ids) glNamedFramebufferTexture(name, GL_COLOR_ATTACHMENT1, t->ids, 0);
     glNamedFramebufferDrawBuffers(name, with_ids ? 2 : 1, buffers);
     return name;
 }
@@ -56,7 +66,7 @@ prom_target *prom_target_create(uint32_t width, uint32_t height, bool with_ids,
     t->has_ids = with_ids;
     t->color = make_renderbuffer(GL_RGBA8, width, height);
     t->depth = make_renderbuffer(GL_DEPTH_COMPONENT32F, width, height);
-    if (with_ids) t->ids = make_renderbuffer(GL_R32UI, width, height);
+    if (with_ids) t->ids = make_id_texture(width, height);
     t->framebuffer = make_framebuffer(t, with_ids);
     t->plain = with_ids ? make_framebuffer(t, false) : t->framebuffer;
     if (!is_complete(t)) {
@@ -75,22 +85,29 @@ void prom_target_destroy(prom_target *target)
     if (!target) return;
     if (target->plain != target->framebuffer) glDeleteFramebuffers(1, &target->plain);
     glDeleteFramebuffers(1, &target->framebuffer);
-    glDeleteRenderbuffers(3, (GLuint[]){target->color, target->depth, target->ids});
+    glDeleteRenderbuffers(2, (GLuint[]){target->color, target->depth});
+    glDeleteTextures(1, &target->ids);
     prom_free(target);
 }
 
-void prom_target_clear(prom_target *target, const uint8_t rgba[4])
+void target_clear(prom_target *target, const uint8_t rgba[4], bool ids)
 {
     GLfloat color[4];
     for (int i = 0; i < 4; i++) color[i] = (GLfloat)rgba[i] / 255.0f;
     const GLuint none[4] = {PROM_NONE, PROM_NONE, PROM_NONE, PROM_NONE};
     const GLfloat far = 0.0f; // reverse z
-    glBindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
+    ids = ids && target->has_ids;
+    glBindFramebuffer(GL_FRAMEBUFFER, ids ? target->framebuffer : target->plain);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glDepthMask(GL_TRUE);
     glClearBufferfv(GL_COLOR, 0, color);
     glClearBufferfv(GL_DEPTH, 0, &far);
-    if (target->has_ids) glClearBufferuiv(GL_COLOR, 1, none);
+    if (ids) glClearBufferuiv(GL_COLOR, 1, none);
+}
+
+void prom_target_clear(prom_target *target, const uint8_t rgba[4])
+{
+    target_clear(target, rgba, true);
 }
 
 static void flip_rows(void *pixels, uint32_t width, uint32_t height)

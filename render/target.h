@@ -11,8 +11,12 @@
 struct prom_target {
     uint32_t width, height;
     bool has_ids;
-    GLuint color, depth, ids;  // renderbuffers; ids is 0 without
+    GLuint color, depth;       // renderbuffers
+    GLuint ids;                // a texture, or 0
     GLuint framebuffer, plain; // the same framebuffer without ids
 };
+
+// prom_target_clear, of the ids only if asked for.
+void target_clear(prom_target *target, const uint8_t rgba[4], bool ids);
 
 #endif
