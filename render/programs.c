@@ -20,9 +20,10 @@ static pipeline canonical(pipeline p, look l)
     return p;
 }
 
-static GLuint compile(GLenum stage, const char *prefix, const char *text, prom_error *error)
+static GLuint compile(GLenum stage, const char *prefix, const char *library, const char *text,
+                      prom_error *error)
 {
-    const char *parts[] = {prefix, prom_glsl_lighting_glsl, text};
+    const char *parts[] = {prefix, library, text};
     GLuint shader = glCreateShader(stage);
     glShaderSource(shader, 3, parts, NULL);
     glCompileShader(shader);
@@ -36,11 +37,12 @@ static GLuint compile(GLenum stage, const char *prefix, const char *text, prom_e
     return 0;
 }
 
-static GLuint link(GLuint vertex, GLuint fragment, prom_error *error)
+// Of one shader or two.
+static GLuint link(const GLuint shaders[2], prom_error *error)
 {
     GLuint name = glCreateProgram();
-    glAttachShader(name, vertex);
-    glAttachShader(name, fragment);
+    for (int i = 0; i < 2; i++)
+        if (shaders[i]) glAttachShader(name, shaders[i]);
     glLinkProgram(name);
     GLint ok = 0;
     glGetProgramiv(name, GL_LINK_STATUS, &ok);
@@ -58,13 +60,23 @@ static prom_status build(program *out, pipeline p, look l, bool with_ids, prom_e
     snprintf(prefix, sizeof prefix,
              "#version 450 core\n#define PIPELINE_%s\n#define LOOK_%s\n%s", pipeline_names[p],
              look_names[l], with_ids ? "" : "#define WITHOUT_ID\n");
-    GLuint vertex = compile(GL_VERTEX_SHADER, prefix, prom_glsl_mesh_vert, error);
-    if (!vertex) return PROM_ERR_UNSUPPORTED;
-    GLuint fragment = compile(GL_FRAGMENT_SHADER, prefix, prom_glsl_mesh_frag, error);
-    if (fragment) out->name = link(vertex, fragment, error);
-    glDeleteShader(vertex);
-    glDeleteShader(fragment);
+    const char *light = prom_glsl_lighting_glsl;
+    GLuint shaders[2] = {compile(GL_VERTEX_SHADER, prefix, light, prom_glsl_mesh_vert, error)};
+    if (!shaders[0]) return PROM_ERR_UNSUPPORTED;
+    shaders[1] = compile(GL_FRAGMENT_SHADER, prefix, light, prom_glsl_mesh_frag, error);
+    if (shaders[1]) out->name = link(shaders, error);
+    glDeleteShader(shaders[0]);
+    glDeleteShader(shaders[1]);
     return out->name ? PROM_OK : PROM_ERR_UNSUPPORTED;
+}
+
+GLuint programs_make_compute(const char *text, prom_error *error)
+{
+    const GLuint shaders[2] = {
+        compile(GL_COMPUTE_SHADER, "#version 450 core\n", "", text, error)};
+    GLuint name = shaders[0] ? link(shaders, error) : 0;
+    glDeleteShader(shaders[0]);
+    return name;
 }
 
 prom_status programs_init(programs *all, prom_error *error)

@@ -42,4 +42,8 @@ look look_of_output(prom_output output);
 // PIPELINE_BLENDED writes none, whatever is asked for.
 program *programs_get(programs *programs, pipeline pipeline, look look, bool with_ids);
 
+// A compute program by itself, without the version line; the caller deletes it. 0 with
+// PROM_ERR_UNSUPPORTED as above.
+GLuint programs_make_compute(const char *text, prom_error *error);
+
 #endif

@@ -5,5 +5,6 @@
 extern const char prom_glsl_lighting_glsl[];
 extern const char prom_glsl_mesh_vert[];
 extern const char prom_glsl_mesh_frag[];
+extern const char prom_glsl_gather_ids_comp[];
 
 #endif
