@@ -77,6 +77,7 @@ static void set_what(json_t *run, const prom_run_facts *f)
     set(run, "resolution", json_pack("[i, i]", (int)s->camera.width, (int)s->camera.height));
     set(run, "budget_ms", prom_json_number(f->options->budget_ms));
     set(run, "selector", prom_json_text(f->options->selector));
+    set(run, "visibility", prom_json_text(prom_visibility_mode_name(s->visibility)));
     set(run, "device", device_json(s));
     set(run, "program", prom_json_text("promenade " PROM_VERSION));
 }
@@ -177,8 +178,8 @@ void prom_bench_print(const prom_run_facts *facts)
     prom_run_statistics t = statistics(facts);
     printf("scene      %s, path %s, %zu frames at %ux%u\n", facts->scene, facts->path,
            r->frames.count, facts->session->camera.width, facts->session->camera.height);
-    printf("selector   %s, budget %g ms\n", facts->options->selector,
-           facts->options->budget_ms);
+    printf("selector   %s, budget %g ms, visibility %s\n", facts->options->selector,
+           facts->options->budget_ms, prom_visibility_mode_name(facts->session->visibility));
     printf("frame      mean %.1f ms, p50 %.1f, p95 %.1f, p99 %.1f, max %.1f, std %.1f\n",
            t.frame_ms.mean, t.frame_ms.p50, t.frame_ms.p95, t.frame_ms.p99, t.frame_ms.max,
            t.frame_ms.std);

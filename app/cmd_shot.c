@@ -1,7 +1,7 @@
 // promenade shot: one picture of a model.
 #include "app/command.h"
 #include "app/output.h"
-#include "app/session.h"
+#include "app/sight.h"
 
 #include "metaobj/base/log.h"
 #include "traverse/governor.h"
@@ -10,6 +10,7 @@
 #include <stdio.h>
 
 #define AUTO_FRAMES 300
+#define SETTLE_FRAMES 8 // until what frames show of each other has settled
 
 typedef struct shot_options {
     prom_view_options view;
@@ -115,16 +116,24 @@ static prom_status draw(const shot_options *o, prom_session *session, prom_error
     prom_governor governor;
     prom_governor_init(&governor, session->cost.margin);
     double allowed = budgeted ? prom_governor_budget(&governor, o->view.budget_ms) : INFINITY;
+    prom_sight sight;
     prom_cut cut = {0};
-    prom_session_select(session, selector, &camera, allowed, o->view.distance_scale, &cut);
-    prom_session_draw(session, &cut, &camera, &o->draw);
+    prom_status status = prom_sight_init(&sight, session, error);
+    for (int i = 0; !status && i < (sight.counter ? SETTLE_FRAMES : 1); i++) {
+        prom_renderer_take_stats(session->renderer);
+        prom_sight_begin(&sight, &camera);
+        prom_session_select(session, selector, sight.visibility, &camera, allowed,
+                            o->view.distance_scale, &cut);
+        prom_sight_draw(&sight, &cut, &camera, &o->draw);
+    }
+    prom_sight_finish(&sight);
     prom_draw_stats stats = prom_renderer_take_stats(session->renderer);
     bool heeds = prom_selector_class_named(o->view.selector)->budgeted;
     if (heeds && cut.cmin_ms > allowed)
         prom_log(PROM_LOG_WARNING,
                  "budget %g ms: even the cheapest cut is predicted at %.1f ms of drawing",
                  o->view.budget_ms, cut.cmin_ms);
-    prom_status status = prom_session_write_png(session, o->output, error);
+    if (!status) status = prom_session_write_png(session, o->output, error);
     if (!status) {
         printf("%s: %s, %llu triangles in %zu nodes", o->output, o->view.selector,
                (unsigned long long)stats.triangles, cut.entries.count);

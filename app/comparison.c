@@ -143,7 +143,7 @@ prom_difference prom_comparison_run(prom_comparison *comparison, prom_session *s
     prom_comparison *c = comparison;
     bool quality = wanted & PROM_COMPARE_QUALITY;
     prom_difference difference = {.found = wanted};
-    prom_session_select(session, c->full, camera, INFINITY, 1, &c->cut);
+    prom_session_select(session, c->full, NULL, camera, INFINITY, 1, &c->cut);
     look(c, session, camera, cut, quality, &c->shown);
     look(c, session, camera, &c->cut, quality, &c->truth);
     if (wanted & PROM_COMPARE_HOLES)

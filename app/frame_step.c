@@ -10,13 +10,17 @@ prom_status prom_frame_step_init(prom_frame_step *step, prom_session *session,
         .session = session, .budget_ms = budget_ms, .distance_scale = distance_scale};
     prom_governor_init(&step->governor, session->cost.margin);
     step->selector = prom_selector_create(selector, &session->model, error);
-    return step->selector ? PROM_OK : error->status;
+    if (!step->selector) return error->status;
+    prom_status status = prom_sight_init(&step->sight, session, error);
+    if (status) prom_frame_step_finish(step);
+    return status;
 }
 
 void prom_frame_step_finish(prom_frame_step *step)
 {
     prom_cut_finish(&step->cut);
     prom_selector_destroy(step->selector);
+    prom_sight_finish(&step->sight);
 }
 
 // What the frame may be predicted at, and what its prediction is corrected by, are those of its
@@ -29,9 +33,11 @@ prom_frame_record prom_frame_step_draw(prom_frame_step *step, const prom_camera 
     double ratio = step->governor.ratio;
 
     double allowed = prom_governor_budget(&step->governor, step->budget_ms);
-    prom_session_select(s, step->selector, camera, allowed, step->distance_scale, &step->cut);
+    prom_sight_begin(&step->sight, camera);
+    prom_session_select(s, step->selector, step->sight.visibility, camera, allowed,
+                        step->distance_scale, &step->cut);
     double selected = prom_clock_ms();
-    prom_session_draw(s, &step->cut, camera, &plain);
+    prom_sight_draw(&step->sight, &step->cut, camera, &plain);
     double end = prom_clock_ms();
 
     prom_draw_stats stats = prom_renderer_take_stats(s->renderer);

@@ -6,7 +6,7 @@
 #define PROM_APP_FRAME_STEP_H
 
 #include "app/comparison.h"
-#include "app/session.h"
+#include "app/sight.h"
 #include "traverse/governor.h"
 
 typedef struct prom_frame_record {
@@ -16,7 +16,7 @@ typedef struct prom_frame_record {
     double triangles, draws;
     double benefit_px, loss_px;
     uint32_t cut_nodes;
-    bool feasible; // the cheapest cut was within what could be spent
+    bool feasible;              // the cheapest cut was within what could be spent
     prom_difference difference; // from full detail, where it was looked for
 } prom_frame_record;
 
@@ -24,6 +24,7 @@ typedef struct prom_frame_step {
     prom_session *session;
     prom_selector *selector;
     prom_governor governor;
+    prom_sight sight;
     prom_cut cut; // the last frame's
     double budget_ms, distance_scale;
 } prom_frame_step;

@@ -116,7 +116,11 @@ const struct argp prom_argp_log = {.options = log_options, .parser = parse_log};
 // ---- what shot and bench share
 
 const prom_view_options prom_view_options_default = {
-    .distance_scale = 1, .fov_degrees = 60, .size_px = {1280, 720}};
+    .distance_scale = 1,
+    .fov_degrees = 60,
+    .visibility = PROM_SEE_BOTH,
+    .size_px = {1280, 720},
+};
 
 const char *prom_view_path_file(const prom_view_options *view)
 {
@@ -131,6 +135,7 @@ enum {
     KEY_PROFILE,
     KEY_DISTANCE_SCALE,
     KEY_FOV,
+    KEY_VISIBILITY,
 };
 
 static const struct argp_option view_options[] = {
@@ -143,6 +148,10 @@ static const struct argp_option view_options[] = {
     {"fov-deg", KEY_FOV, "DEGREES", 0, "Vertical field of view (60)", 0},
     {"distance-scale", KEY_DISTANCE_SCALE, "FACTOR", 0,
      "For the selector `distance`: factor on its ranges (1)", 0},
+    {"visibility", KEY_VISIBILITY, "none|frame|cells|both", 0,
+     "From what the selector knows what is hidden: the pixels counted in earlier frames, the "
+     "model's view cells, or both (both)",
+     0},
     {"profile", KEY_PROFILE, "FILE", 0,
      "Cost profile from `calibrate`; the default is the device's own, made when missing", 0},
     {0},
@@ -158,6 +167,21 @@ static const char *known_selector(const struct argp_state *state, const char *na
     }
     argp_error(state, "--selector: there is no `%s`; there are %s", name, names);
     return name;
+}
+
+static const char *const visibility_modes[] = {"none", "frame", "cells", "both"};
+
+const char *prom_visibility_mode_name(prom_visibility_mode mode)
+{
+    return visibility_modes[mode];
+}
+
+static prom_visibility_mode known_visibility(const struct argp_state *state, const char *name)
+{
+    for (int i = PROM_SEE_NONE; i <= PROM_SEE_BOTH; i++)
+        if (!strcmp(name, visibility_modes[i])) return (prom_visibility_mode)i;
+    argp_error(state, "--visibility: there is no `%s`; give none, frame, cells or both", name);
+    return PROM_SEE_NONE;
 }
 
 static error_t parse_view(int key, char *text, struct argp_state *state)
@@ -181,6 +205,9 @@ static error_t parse_view(int key, char *text, struct argp_state *state)
         break;
     case KEY_DISTANCE_SCALE:
         o->distance_scale = prom_option_number(state, "--distance-scale", text, 1e-3, 1e3);
+        break;
+    case KEY_VISIBILITY:
+        o->visibility = known_visibility(state, text);
         break;
     case KEY_FOV:
         o->fov_degrees = prom_option_number(state, "--fov-deg", text, 1, 170);

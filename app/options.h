@@ -34,6 +34,15 @@ void prom_option_require(const struct argp_state *state, const char *what, const
 // --quiet and --verbose, which set the log's level. No input.
 extern const struct argp prom_argp_log;
 
+// What a selection knows of what hides what; flags.
+typedef enum prom_visibility_mode {
+    PROM_SEE_NONE = 0,
+    PROM_SEE_FRAME = 1, // counts of earlier frames
+    PROM_SEE_CELLS = 2, // the model's view cells, where it has some
+    PROM_SEE_BOTH = 3,
+} prom_visibility_mode;
+const char *prom_visibility_mode_name(prom_visibility_mode mode); // as on the command line
+
 // What `shot` and `bench` have in common. Input: prom_view_options.
 typedef struct prom_view_options {
     const char *path;     // a file or "auto"; NULL: auto
@@ -42,6 +51,7 @@ typedef struct prom_view_options {
     double budget_ms;     // 0: not given
     double distance_scale;
     double fov_degrees; // vertical
+    prom_visibility_mode visibility;
     uint32_t size_px[2];
 } prom_view_options;
 

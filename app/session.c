@@ -11,7 +11,15 @@ static prom_status open_model(prom_session *s, const char *model_path, prom_erro
 {
     s->container = prom_container_open(model_path, error);
     if (!s->container) return error->status;
-    return prom_container_load_model(s->container, &s->model, error);
+    prom_status status = prom_container_load_model(s->container, &s->model, error);
+    if (!status && s->visibility & PROM_SEE_CELLS)
+        status = prom_container_read_view_cells(s->container, &s->model, &s->cells, error);
+    return status;
+}
+
+static bool with_ids(const prom_session *s)
+{
+    return s->visibility & PROM_SEE_FRAME;
 }
 
 static prom_context *create_headless(void *user, uint32_t size_px[2], prom_error *error)
@@ -30,7 +38,7 @@ static prom_status open_device(prom_session *s, const prom_session_device *devic
     s->renderer = prom_renderer_create(s->context, error);
     if (!s->renderer) return error->status;
     s->list = prom_draw_list_create(s->renderer);
-    s->target = prom_target_create(size_px[0], size_px[1], false, error);
+    s->target = prom_target_create(size_px[0], size_px[1], with_ids(s), error);
     return s->target ? PROM_OK : error->status;
 }
 
@@ -68,6 +76,7 @@ static prom_status open_all(prom_session *s, const prom_session_device *device,
 {
     uint32_t size_px[2] = {options->size_px[0], options->size_px[1]};
     double start = prom_clock_ms();
+    s->visibility = options->visibility;
     prom_status status = open_model(s, model_path, error);
     if (!status && with_path) status = open_path(s, options->path, path_frames, error);
     if (!status) status = open_device(s, device, size_px, error);
@@ -111,6 +120,7 @@ void prom_session_close(prom_session *session)
     if (session->list) prom_draw_list_destroy(session->list);
     if (session->renderer) prom_renderer_destroy(session->renderer);
     prom_context_destroy(session->context);
+    prom_view_cells_finish(&session->cells);
     prom_model_finish(&session->model);
     prom_container_close(session->container);
     *session = (prom_session){0};
@@ -119,7 +129,7 @@ void prom_session_close(prom_session *session)
 prom_status prom_session_resize(prom_session *session, const uint32_t size_px[2],
                                 prom_error *error)
 {
-    prom_target *target = prom_target_create(size_px[0], size_px[1], false, error);
+    prom_target *target = prom_target_create(size_px[0], size_px[1], with_ids(session), error);
     if (!target) return error->status;
     prom_target_destroy(session->target);
     session->target = target;
@@ -129,8 +139,8 @@ prom_status prom_session_resize(prom_session *session, const uint32_t size_px[2]
 }
 
 void prom_session_select(const prom_session *session, prom_selector *selector,
-                         const prom_camera *camera, double budget_ms, double distance_scale,
-                         prom_cut *cut)
+                         const prom_visibility *visibility, const prom_camera *camera,
+                         double budget_ms, double distance_scale, prom_cut *cut)
 {
     prom_view view;
     prom_view_init(&view, camera);
@@ -139,15 +149,22 @@ void prom_session_select(const prom_session *session, prom_selector *selector,
         .cost = &session->cost,
         .budget_ms = budget_ms,
         .distance_scale = (float)distance_scale,
+        .visibility = visibility,
     };
     prom_selector_run(selector, &selection, cut);
+}
+
+void prom_session_submit(prom_session *session, const prom_cut *cut, const prom_camera *camera,
+                         const prom_frame_options *options)
+{
+    prom_renderer_draw_frame(session->renderer, session->list, session->target, &session->model,
+                             cut, camera, options);
 }
 
 void prom_session_draw(prom_session *session, const prom_cut *cut, const prom_camera *camera,
                        const prom_frame_options *options)
 {
-    prom_renderer_draw_frame(session->renderer, session->list, session->target, &session->model,
-                             cut, camera, options);
+    prom_session_submit(session, cut, camera, options);
     prom_renderer_finish(session->renderer);
 }
 

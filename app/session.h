@@ -6,6 +6,7 @@
 #include "app/options.h"
 #include "metaobj/container.h"
 #include "metaobj/cut.h"
+#include "metaobj/view_cells.h"
 #include "render/renderer.h"
 #include "scenes/path.h"
 #include "traverse/cost.h"
@@ -15,6 +16,8 @@
 typedef struct prom_session {
     prom_container *container;
     prom_model model;
+    prom_view_cells cells; // of the model; none where they are not asked for
+    prom_visibility_mode visibility;
     prom_context *context;
     prom_renderer *renderer;
     prom_draw_list *list;
@@ -46,11 +49,13 @@ void prom_session_close(prom_session *session); // {0} is allowed
 // Gives the pictures another size. On failure the old one stays.
 prom_status prom_session_resize(prom_session *session, const uint32_t size_px[2],
                                 prom_error *error);
-// Selects a cut for a view.
+// Selects a cut for a view. visibility: NULL, or begun for it.
 void prom_session_select(const prom_session *session, prom_selector *selector,
-                         const prom_camera *camera, double budget_ms, double distance_scale,
-                         prom_cut *cut);
-// Draws a cut into the session's target and waits for the picture.
+                         const prom_visibility *visibility, const prom_camera *camera,
+                         double budget_ms, double distance_scale, prom_cut *cut);
+// Draws a cut into the session's target; `draw` waits for the picture.
+void prom_session_submit(prom_session *session, const prom_cut *cut, const prom_camera *camera,
+                         const prom_frame_options *options);
 void prom_session_draw(prom_session *session, const prom_cut *cut, const prom_camera *camera,
                        const prom_frame_options *options);
 // Writes the target's picture as a PNG; what the tree does not cover shows the background.

@@ -13,8 +13,9 @@
 #include <string.h>
 #include <unistd.h>
 
-// A picture at rest is drawn again until what the governor knows is of this view only.
-#define SETTLE_FRAMES (PROM_GOVERNOR_FRAMES + 1)
+// A picture at rest is drawn again until what the governor knows is of this view only, and
+// what frames show of each other has settled.
+#define SETTLE_FRAMES (PROM_GOVERNOR_FRAMES + 7)
 #define REST_WAIT_S 0.25
 // The step after a rest: the time before it was no walking.
 #define FIRST_STEP_S (1.0 / 60)

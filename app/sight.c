@@ -1,0 +1,94 @@
+#include "app/sight.h"
+
+// Every so many frames what is blended is counted, and in the others what is not: a pixel has
+// room for one of them.
+#define BLENDED_EVERY 4
+
+prom_status prom_sight_init(prom_sight *sight, prom_session *session, prom_error *error)
+{
+    const prom_model *model = &session->model;
+    prom_visibility_mode mode = session->visibility;
+    *sight = (prom_sight){.session = session};
+    if (mode == PROM_SEE_NONE) return PROM_OK;
+    if (mode & PROM_SEE_FRAME) {
+        sight->counter = prom_id_counter_create(model->tree_count, error);
+        if (!sight->counter) return error->status;
+        sight->px = prom_calloc(model->tree_count, sizeof *sight->px);
+    }
+    sight->visibility =
+        prom_visibility_create(model, mode & PROM_SEE_CELLS ? &session->cells : NULL);
+    return PROM_OK;
+}
+
+void prom_sight_finish(prom_sight *sight)
+{
+    prom_visibility_destroy(sight->visibility);
+    prom_id_counter_destroy(sight->counter);
+    prom_free(sight->px);
+    for (int i = 0; i < PROM_ID_RING; i++) prom_array_finish(&sight->sightings[i].counts);
+    *sight = (prom_sight){0};
+}
+
+static bool is_blended(const prom_model *model, uint32_t node)
+{
+    return model->prototypes[model->prototype[node]].flags & PROM_PROTO_BLENDED;
+}
+
+static void feed(prom_sight *s, const prom_id_counts *seen)
+{
+    prom_sighting *sighting = &s->sightings[seen->frame % PROM_ID_RING];
+    prom_visible_count *counts = sighting->counts.data;
+    for (size_t i = 0; i < seen->count; i++) s->px[seen->counts[i].id] = seen->counts[i].px;
+    for (size_t i = 0; i < sighting->counts.count; i++) {
+        uint32_t node = counts[i].entry.node;
+        bool counted =
+            is_blended(&s->session->model, node) == (sighting->ids == PROM_IDS_BLENDED);
+        counts[i].px = counted ? s->px[node] : -1.0f;
+    }
+    for (size_t i = 0; i < seen->count; i++) s->px[seen->counts[i].id] = 0.0f;
+    prom_visibility_feed(s->visibility, counts, sighting->counts.count);
+}
+
+void prom_sight_begin(prom_sight *sight, const prom_camera *camera)
+{
+    prom_id_counts seen;
+    if (sight->visibility) prom_visibility_begin(sight->visibility, camera);
+    while (sight->counter && prom_id_counter_take(sight->counter, false, &seen))
+        feed(sight, &seen);
+}
+
+static bool has_blended(const prom_model *model, const prom_cut *cut)
+{
+    for (size_t i = 0; i < cut->entries.count; i++)
+        if (is_blended(model, cut->entries.data[i].node)) return true;
+    return false;
+}
+
+static void note(prom_sight *s, const prom_cut *cut, prom_ids ids)
+{
+    prom_sighting *sighting = &s->sightings[s->frames % PROM_ID_RING];
+    sighting->frame = s->frames;
+    sighting->ids = ids;
+    sighting->counts.count = 0;
+    prom_array_reserve(&sighting->counts, cut->entries.count);
+    for (size_t i = 0; i < cut->entries.count; i++)
+        sighting->counts.data[i].entry = cut->entries.data[i];
+    sighting->counts.count = cut->entries.count;
+}
+
+void prom_sight_draw(prom_sight *sight, const prom_cut *cut, const prom_camera *camera,
+                     const prom_frame_options *options)
+{
+    prom_session *s = sight->session;
+    prom_frame_options with_ids = *options;
+    if (sight->counter) {
+        bool blended = sight->frames % BLENDED_EVERY == 0 && has_blended(&s->model, cut);
+        with_ids.ids = blended ? PROM_IDS_BLENDED : PROM_IDS_OPAQUE;
+    }
+    prom_session_submit(s, cut, camera, &with_ids);
+    if (sight->counter && prom_id_counter_start(sight->counter, s->target, sight->frames)) {
+        note(sight, cut, with_ids.ids);
+        sight->frames++;
+    }
+    prom_renderer_finish(s->renderer);
+}

@@ -1,0 +1,37 @@
+// What is seen of what is drawn: counts the visible pixels of frames and keeps the visibility
+// of the model's nodes from them, and from its view cells.
+//
+//   every frame: prom_sight_begin, select with sight->visibility, prom_sight_draw
+#ifndef PROM_APP_SIGHT_H
+#define PROM_APP_SIGHT_H
+
+#include "app/session.h"
+#include "render/id_counter.h"
+#include "traverse/visibility.h"
+
+// A frame whose pixels are being counted.
+typedef struct prom_sighting {
+    uint64_t frame;
+    prom_ids ids;
+    PROM_ARRAY(prom_visible_count) counts; // its cut; px is filled in when they are known
+} prom_sighting;
+
+typedef struct prom_sight {
+    prom_session *session;
+    prom_visibility *visibility; // NULL: nothing is known, nor asked for
+    prom_id_counter *counter;    // NULL: frames are not counted
+    prom_sighting sightings[PROM_ID_RING];
+    float *px; // per node; 0 between the frames
+    uint64_t frames;
+} prom_sight;
+
+// As the session's visibility mode says. On failure there is nothing to finish.
+prom_status prom_sight_init(prom_sight *sight, prom_session *session, prom_error *error);
+void prom_sight_finish(prom_sight *sight);
+// Takes the counts that have arrived; to be called before the cut is selected.
+void prom_sight_begin(prom_sight *sight, const prom_camera *camera);
+// Draws a cut into the session's target, has its pixels counted, and waits for the picture.
+void prom_sight_draw(prom_sight *sight, const prom_cut *cut, const prom_camera *camera,
+                     const prom_frame_options *options);
+
+#endif
