@@ -15,7 +15,7 @@
 
 // ---- the writer's own calls: these definitions stand before the C library's
 
-static enum { CALL_NONE, CALL_FSYNC, CALL_FTRUNCATE, CALL_RENAME } failing_call;
+static enum { CALL_NONE, CALL_FSYNC, CALL_FTRUNCATE, CALL_RENAME, CALL_WRITE } failing_call;
 static int failing_errno;
 
 static bool fails(int call)
@@ -38,6 +38,11 @@ int ftruncate(int fd, off_t bytes)
 int rename(const char *from, const char *to)
 {
     return fails(CALL_RENAME) ? -1 : (int)syscall(SYS_rename, from, to);
+}
+
+ssize_t write(int fd, const void *bytes, size_t count)
+{
+    return fails(CALL_WRITE) ? -1 : syscall(SYS_write, fd, bytes, count);
 }
 
 // ---- a file to keep, and a writer that fails
@@ -119,17 +124,49 @@ static void assert_clear(const prom_error *error, const char *path, const char *
     assert_true(good);
 }
 
-static void every_call_fails(const setting *s, unsigned mask, int code, const char *expected)
+typedef prom_status write_file(const setting *s, prom_error *error);
+
+static prom_status build(const setting *s, prom_error *error)
+{
+    return fixture_write(&s->f, s->path, 1, error);
+}
+
+// Other cells in the place of those that are there.
+static prom_status put_cells(const setting *s, prom_error *error)
+{
+    prom_view_cells cells;
+    uint32_t seed = 4;
+    fixture_view_cells(&cells, &s->f.model, 50, &seed);
+    prom_writer *w = prom_writer_reopen(s->path, error);
+    prom_status status = w ? prom_writer_put_view_cells(w, &cells, error) : error->status;
+    if (!status) status = prom_writer_add_stage(w, "view cells", 2, 3, error);
+    if (!status) status = prom_writer_finish(w, error);
+    prom_writer_destroy(w);
+    prom_view_cells_finish(&cells);
+    return status;
+}
+
+static void put_back(const setting *s)
+{
+    FILE *file = fopen(s->path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(s->bytes, 1, s->count, file), s->count);
+    fclose(file);
+}
+
+static void every_call_of(write_file *run, const setting *s, unsigned mask, int code,
+                          const char *expected)
 {
     prom_error error;
     failing_vfs_arm(mask, code, 0, false);
-    assert_int_equal(fixture_write(&s->f, s->path, 1, &error), PROM_OK);
+    assert_int_equal(run(s, &error), PROM_OK);
     long calls = failing_vfs_calls();
+    put_back(s);
     assert_true(calls > 0);
     for (long n = 1; n <= 2 * calls; n++) {
         error = (prom_error){0};
         failing_vfs_arm(mask, code, (n + 1) / 2, n & 1); // once, and for good
-        prom_status status = fixture_write(&s->f, s->path, 1, &error);
+        prom_status status = run(s, &error);
         assert_true(failing_vfs_failed() > 0);
         failing_vfs_arm(0, SQLITE_OK, 0, false);
         if (status == PROM_OK) print_error("call %ld of %ld did not matter\n", n, calls);
@@ -138,6 +175,12 @@ static void every_call_fails(const setting *s, unsigned mask, int code, const ch
         assert_nothing_done(s);
     }
     print_message("%ld calls\n", calls);
+}
+
+static void every_call_fails(const setting *s, unsigned mask, int code, const char *expected)
+{
+    every_call_of(build, s, mask, code, expected);
+    every_call_of(put_cells, s, mask, code, expected);
 }
 
 static void a_full_disk(void **state)
@@ -165,24 +208,29 @@ static void journals_that_cannot_go(void **state)
     every_call_fails(*state, FAILING_DELETE, SQLITE_IOERR, "cannot write");
 }
 
-static void own_calls_that_fail(void **state)
+static void own_calls_of(write_file *run, const setting *s, unsigned last)
 {
-    const setting *s = *state;
     static const struct {
         int error;
         const char *text;
     } reasons[] = {{ENOSPC, "the disk is full"}, {EDQUOT, "quota"}, {EIO, "error"}};
-    for (int call = CALL_FSYNC; call <= CALL_RENAME; call++)
+    for (unsigned call = CALL_FSYNC; call <= last; call++)
         for (size_t r = 0; r < sizeof reasons / sizeof *reasons; r++) {
             prom_error error = {0};
-            failing_call = (unsigned)call;
+            failing_call = call;
             failing_errno = reasons[r].error;
-            prom_status status = fixture_write(&s->f, s->path, 1, &error);
+            prom_status status = run(s, &error);
             failing_call = CALL_NONE;
             assert_int_equal(status, PROM_ERR_OUTPUT);
             assert_clear(&error, s->path, reasons[r].text);
             assert_nothing_done(s);
         }
+}
+
+static void own_calls_that_fail(void **state)
+{
+    own_calls_of(build, *state, CALL_RENAME);
+    own_calls_of(put_cells, *state, CALL_WRITE); // of the copy
 }
 
 // After an error every call says so, and none writes on.
