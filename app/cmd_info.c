@@ -48,7 +48,9 @@ typedef struct facts {
     prom_container *container;
     prom_model_facts model;
     uint64_t file_bytes, content_hash;
-    json_t *stages; // array of {name, ms, content}
+    uint32_t cells;
+    uint64_t cell_bytes; // in the file
+    json_t *stages;      // array of {name, ms, content}
 } facts;
 
 static void add_stage(void *user, const char *name, uint64_t content_hash, double ms)
@@ -67,9 +69,14 @@ static prom_status gather(facts *f, prom_error *error)
     if (!f->container) return error->status;
     prom_status status = prom_container_load_model(f->container, &model, error);
     if (status) return status;
-    prom_model_facts_of(&model, &f->model);
+    prom_view_cells cells;
+    status = prom_container_read_view_cells(f->container, &model, &cells, error);
+    if (!status) prom_model_facts_of(&model, &cells, &f->model);
+    f->cells = cells.cell_count;
+    f->cell_bytes = prom_container_view_cell_bytes(f->container);
+    prom_view_cells_finish(&cells);
     prom_model_finish(&model);
-    status = prom_container_content_hash(f->container, &f->content_hash, error);
+    if (!status) status = prom_container_content_hash(f->container, &f->content_hash, error);
     if (!status) status = prom_container_stages(f->container, add_stage, f->stages, error);
     struct stat st = {0};
     stat(f->path, &st);
@@ -157,6 +164,16 @@ static json_t *textures_json(const prom_model_facts *m)
     return json;
 }
 
+static json_t *cells_json(const facts *f)
+{
+    json_t *json = json_object();
+    set_count(json, "count", f->cells);
+    set(json, "size", prom_json_number(f->model.cell_size));
+    set_count(json, "bytes", f->cell_bytes);
+    set(json, "mean_shown", prom_json_number(f->model.cell_shows));
+    return json;
+}
+
 static json_t *tables_json(const prom_model_facts *m)
 {
     json_t *json = json_object();
@@ -191,6 +208,7 @@ static json_t *to_json(const facts *f)
     set(json, "representations", reps_json(m));
     set(json, "textures", textures_json(m));
     set_count(json, "materials", m->materials);
+    set(json, "view_cells", cells_json(f));
     set(json, "tables", tables_json(m));
     set(json, "stages", json_incref(f->stages));
     return json;
@@ -249,6 +267,16 @@ static void print_tree(const prom_model_facts *m)
            m->leaf_prototypes, m->cluster_prototypes, m->shared_prototypes);
 }
 
+static void print_cells(const facts *f)
+{
+    if (f->cells)
+        printf("%-16s %u of size %g, %.2f MiB; one shows %.0f %% of %u leaves on average\n",
+               "view cells", f->cells, f->model.cell_size, mib(f->cell_bytes),
+               100 * f->model.cell_shows, f->model.leaves);
+    else
+        printf("%-16s none\n", "view cells");
+}
+
 static void print_bulk(const prom_model_facts *m)
 {
     printf("\n%-16s %10s %10s %12s\n", "representation", "of leaves", "clusters", "triangles");
@@ -291,6 +319,7 @@ static void print_text(const facts *f)
     print_meta(f, "device", "device");
     print_found(f);
     print_tree(&f->model);
+    print_cells(f);
     print_bulk(&f->model);
     print_stages(f->stages);
 }

@@ -95,15 +95,25 @@ static uint64_t mesh_bytes(const prom_model *model)
     return bytes;
 }
 
-void prom_model_facts_of(const prom_model *model, prom_model_facts *facts)
+static void count_cells(const prom_view_cells *cells, prom_model_facts *facts)
+{
+    if (!cells->cell_count) return;
+    facts->cell_size = cells->size;
+    facts->cell_shows = (double)cells->entry_count / cells->cell_count / (double)facts->leaves;
+}
+
+void prom_model_facts_of(const prom_model *model, const prom_view_cells *cells,
+                         prom_model_facts *facts)
 {
     *facts = (prom_model_facts){.materials = model->material_count};
     count_nodes(model, facts);
     count_prototypes(model, facts);
+    count_cells(cells, facts);
     const prom_model *m = model;
     uint64_t node =
         5 * sizeof(uint32_t) + sizeof(prom_placement) + 3 * sizeof(double) + 4 * sizeof(float);
     uint64_t rep = sizeof *m->reps, proto = sizeof *m->prototypes + sizeof *m->coverage;
+    uint64_t entry = sizeof *cells->leaves + sizeof *cells->shares;
     prom_table_facts tables[PROM_FACT_TABLES] = {
         {"node", m->node_count, m->node_count * node},
         {"prototype", m->prototype_count, m->prototype_count * proto},
@@ -112,6 +122,8 @@ void prom_model_facts_of(const prom_model *model, prom_model_facts *facts)
         {"share", m->share_count, m->share_count * sizeof *m->shares},
         {"mesh", m->mesh_count, mesh_bytes(m)},
         {"texture", m->texture_count, count_textures(m, facts)},
+        {"view_cell", cells->cell_count,
+         cells->cell_count * sizeof *cells->cells + cells->entry_count * entry},
     };
     memcpy(facts->tables, tables, sizeof tables);
 }

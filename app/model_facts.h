@@ -5,6 +5,7 @@
 #include "metaobj/container.h"
 #include "metaobj/model.h"
 #include "metaobj/texture.h"
+#include "metaobj/view_cells.h"
 
 #define PROM_FACT_LEVELS 64 // levels of a tree that are told apart
 
@@ -23,7 +24,7 @@ typedef struct prom_table_facts {
     uint64_t rows, bytes; // as loaded, without allocation overhead
 } prom_table_facts;
 
-#define PROM_FACT_TABLES 7
+#define PROM_FACT_TABLES 8
 
 typedef struct prom_model_facts {
     uint64_t triangles; // full detail, instanced, with the background
@@ -37,10 +38,13 @@ typedef struct prom_model_facts {
     prom_texture_facts textures[PROM_TEXTURE_KIND_COUNT];
     prom_table_facts tables[PROM_FACT_TABLES];
     uint32_t materials;
-    double size[3]; // of the layout, scene units
+    double size[3];    // of the layout, scene units
+    double cell_size;  // of the view cells, scene units; 0: there are none
+    double cell_shows; // part of the tree's leaves that a view cell shows, their mean
 } prom_model_facts;
 
-void prom_model_facts_of(const prom_model *model, prom_model_facts *facts);
+void prom_model_facts_of(const prom_model *model, const prom_view_cells *cells,
+                         prom_model_facts *facts);
 // "color", "impostor-lit", "impostor-albedo"
 const char *prom_texture_kind_name(uint32_t kind);
 
