@@ -111,6 +111,8 @@ static const char *const wrong[][2] = {
     {"bench a.prom --budget-ms -5", "--budget-ms"},
     {"bench a.prom --selector best", "greedy"},
     {"bench a.prom --frames 0", "--frames"},
+    {"bench a.prom --quality-frames -1", "--quality-frames"},
+    {"bench a.prom --ppd 0.5", "--ppd"},
     {"walk", "missing"},
     {"walk a.prom b.prom", "b.prom"},
     {"walk a.prom --frames 0", "--frames"},
