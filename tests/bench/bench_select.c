@@ -56,7 +56,7 @@ typedef struct tally {
 
 static void time_selectors(uint32_t leaves, int frames)
 {
-    const random_model_options o = {leaves, 16, 8.0f * sqrtf((float)leaves), 0.1f};
+    const random_model_options o = {leaves, 16, 8.0f * sqrtf((float)leaves), 0.1f, 0};
     prom_model m;
     random_model(&m, 1, &o);
     printf("random tree: %u nodes, %u prototypes, %u representations\n", m.tree_count,
