@@ -4,6 +4,7 @@
 // in double precision that reproduces the authors' published values; their pictures are not
 // all made of 8-bit values, so they enter behind the decoding.
 #include "benefit/flip.c"
+#include "flip_reference.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,6 +16,7 @@ enum { SIDE = 64, PIXELS = SIDE * SIDE, WIDTH = 61, HEIGHT = 37 };
 
 // The authors' default, unrounded.
 #define PPD (0.7 * 3840 / 0.7 * M_PI / 180)
+#define PAIR_PPD 22.34
 
 // ---- known values
 
@@ -172,7 +174,7 @@ typedef struct pair {
 static int open_pair(void **state)
 {
     static pair p;
-    p.flip = prom_flip_create(WIDTH, HEIGHT, 22.34);
+    p.flip = prom_flip_create(WIDTH, HEIGHT, PAIR_PPD);
     random_picture(p.a, 4, 1);
     random_picture(p.b, 4, 2);
     *state = &p;
@@ -254,6 +256,18 @@ static void errors_stay_near_the_change_and_turn_with_it(void **state)
         assert_float_equal(p->map[i], p->other[WIDTH * HEIGHT - 1 - i], 1e-3);
 }
 
+// The known values say little of colours that change from pixel to pixel.
+static void coloured_pictures_follow_the_recipe(void **state)
+{
+    pair *p = *state;
+    static flip_reference r = {.width = WIDTH, .height = HEIGHT, .ppd = PAIR_PPD};
+    flip_reference_set(&r, 0, p->a);
+    flip_reference_set(&r, 1, p->b);
+    prom_flip_run(p->flip, p->a, p->b, 4, p->map);
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        assert_float_equal(p->map[i], flip_reference_error(&r, i % WIDTH, i / WIDTH), 1e-4);
+}
+
 // The ends of what a filter is made for, and pictures smaller than it.
 static void extreme_sizes_work(void **state)
 {
@@ -280,6 +294,7 @@ int main(void)
         WITH_PAIR(equal_pictures_have_no_error),
         WITH_PAIR(strides_are_heeded),
         WITH_PAIR(errors_stay_near_the_change_and_turn_with_it),
+        WITH_PAIR(coloured_pictures_follow_the_recipe),
         cmocka_unit_test(extreme_sizes_work),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
