@@ -52,9 +52,9 @@ static void feed(prom_sight *s, const prom_id_counts *seen)
 void prom_sight_begin(prom_sight *sight, const prom_camera *camera)
 {
     prom_id_counts seen;
-    if (sight->visibility) prom_visibility_begin(sight->visibility, camera);
     while (sight->counter && prom_id_counter_take(sight->counter, false, &seen))
         feed(sight, &seen);
+    if (sight->visibility) prom_visibility_begin(sight->visibility, camera);
 }
 
 static bool has_blended(const prom_model *model, const prom_cut *cut)

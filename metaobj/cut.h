@@ -19,6 +19,7 @@ typedef struct prom_cut_entry {
     float visible_px;   // those of them that are not hidden behind other nodes
     float accuracy;     // of the representation in this view: benefit / visible_px
     float cost_ms;
+    bool whole; // the node is wholly in view
 } prom_cut_entry;
 
 // Exactly one entry on every root-to-leaf path whose leaf is in the frustum.

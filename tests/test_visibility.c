@@ -229,7 +229,8 @@ static void pixels_flow_down_without_loss(void **state)
     }
 }
 
-static void moving_forgets_and_turning_does_not(void **state)
+// Two hidden nodes: one was wholly in view, of the other a part.
+static void moving_forgets_and_turning_only_what_was_partly_outside(void **state)
 {
     (void)state;
     uint64_t seed = 76;
@@ -238,34 +239,74 @@ static void moving_forgets_and_turning_does_not(void **state)
     prom_visibility *v = prom_visibility_create(&b.model, NULL);
     do bench_look(&b, &seed);
     while (bench_run(&b, "full", 0)->entries.count < 20);
-    prom_cut *cut = bench_run(&b, "full", 0);
     count_array counts = {0};
-    count_cut(cut, nothing_shows, &seed, &counts);
+    count_cut(bench_run(&b, "full", 0), nothing_shows, &seed, &counts);
     counts.data[0].px = counts.data[0].entry.footprint_px = 1000.0f;
     counts.data[0].entry.depth = 10.0f; // what is seen is 10 away
-    uint32_t hidden = counts.data[1].entry.node;
-    counts.data[1].entry.footprint_px = 1000.0f;
+    uint32_t whole = counts.data[1].entry.node, part = counts.data[2].entry.node;
+    for (int i = 1; i <= 2; i++) {
+        counts.data[i].entry.footprint_px = 1000.0f;
+        counts.data[i].entry.whole = i == 1;
+    }
     prom_visibility_begin(v, &b.camera);
     prom_visibility_feed(v, counts.data, counts.count);
-    float fresh = prom_visibility_share(v, hidden);
-    assert_float_equal(fresh, PROM_VISIBILITY_LEAST, 1e-6);
+    const float least = PROM_VISIBILITY_LEAST;
+    assert_float_equal(prom_visibility_share(v, whole), least, 0.0f);
+    assert_float_equal(prom_visibility_share(v, part), least, 0.0f);
 
     prom_camera camera = b.camera;
-    const float turned[4] = {0, 1, 0, 0};
-    memcpy(camera.orientation, turned, sizeof turned);
+    camera.eye[0] += 1.0;
     prom_visibility_begin(v, &camera);
-    assert_float_equal(prom_visibility_share(v, hidden), fresh, 0.0f);
+    assert_float_equal(prom_visibility_share(v, whole), least, 0.0f);
+    for (int k = 0; k < 4; k++) camera.orientation[k] = k == 1 ? 1.0f : 0.0f; // far round
+    prom_visibility_begin(v, &camera);
+    assert_float_equal(prom_visibility_share(v, whole), least, 0.0f);
+    assert_true(prom_visibility_share(v, part) > 0.1f);
 
-    float last = fresh;
-    for (int step = 0; step < 10; step++) { // half of the distance in all, then far away
-        camera.eye[0] += step < 9 ? 0.5 : 1000.0;
+    float last = least;
+    for (int step = 0; step < 5; step++) {
+        camera.eye[0] += step < 4 ? 1.0 : 1000.0;
         prom_visibility_begin(v, &camera);
-        float share = prom_visibility_share(v, hidden);
+        float share = prom_visibility_share(v, whole);
         assert_true(share > last);
         last = share;
-        if (step == 0) assert_true(share < 0.2f);
     }
     assert_float_equal(last, 1.0f, 1e-3);
+    prom_array_finish(&counts);
+    prom_visibility_destroy(v);
+    bench_finish(&b);
+}
+
+// What was not counted keeps its share; a node above is what most of it is.
+static void what_is_not_counted_keeps_its_share(void **state)
+{
+    (void)state;
+    uint64_t seed = 80;
+    bench b;
+    bench_init(&b, 81, &(random_model_options){.leaves = 80, .max_children = 6, .extent = 30});
+    prom_visibility *v = prom_visibility_create(&b.model, NULL);
+    do bench_look(&b, &seed);
+    while (bench_run(&b, "full", 0)->entries.count < 20);
+    count_array counts = {0};
+    count_cut(bench_run(&b, "full", 0), nothing_shows, &seed, &counts);
+    for (size_t i = 0; i < counts.count; i++) {
+        counts.data[i].entry.footprint_px = 100.0f;
+        counts.data[i].px = 50.0f;
+    }
+    uint32_t last = counts.data[counts.count - 1].entry.node;
+    prom_visibility_begin(v, &b.camera);
+    prom_visibility_feed(v, counts.data, counts.count);
+    assert_float_equal(prom_visibility_share(v, last), 0.5f, 1e-5);
+    for (size_t i = 0; i < counts.count; i++) counts.data[i].px = i ? 80.0f : -1.0f;
+    counts.data[counts.count - 1].px = -1.0f;
+    prom_visibility_feed(v, counts.data, counts.count);
+    assert_float_equal(prom_visibility_share(v, last), 0.5f, 1e-5);
+    float mean = (80.0f * (float)(counts.count - 2) + 100.0f) / (100.0f * (float)counts.count);
+    assert_float_equal(prom_visibility_share(v, 0), mean, 1e-3);
+    for (size_t i = 0; i < counts.count; i++) counts.data[i].px = -1.0f;
+    counts.data[0].px = 0.0f;
+    prom_visibility_feed(v, counts.data, counts.count);
+    assert_float_equal(prom_visibility_share(v, 0), mean, 1e-3);
     prom_array_finish(&counts);
     prom_visibility_destroy(v);
     bench_finish(&b);
@@ -323,7 +364,8 @@ int main(void)
         cmocka_unit_test(nothing_is_spent_on_what_is_hidden),
         cmocka_unit_test(sums_go_up_the_tree),
         cmocka_unit_test(pixels_flow_down_without_loss),
-        cmocka_unit_test(moving_forgets_and_turning_does_not),
+        cmocka_unit_test(moving_forgets_and_turning_only_what_was_partly_outside),
+        cmocka_unit_test(what_is_not_counted_keeps_its_share),
         cmocka_unit_test(cells_are_what_is_known_at_first),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -357,6 +357,7 @@ void prom_eval_emit(const prom_eval *eval, uint32_t node, uint32_t option, prom_
                                        .visible_px = n->px,
                                        .accuracy = n->px > 0.0f ? o->benefit / n->px : 1.0f,
                                        .cost_ms = (float)o->cost,
+                                       .whole = n->inside,
                                    });
     cut->predicted_ms += o->cost;
     cut->benefit += o->benefit;

@@ -5,9 +5,11 @@
 
 #include <math.h>
 
-// A counted share counts for half as much once the eye has moved by this part of the distance
-// to what it sees: by then other things are hidden. A quarter of that changes little. By taste.
-#define HALF_MOVE 0.5f
+// What was counted holds for some way: a part of the distance to what is seen, or for what was
+// partly outside the view, of the angle of view. From there on it fades, to half in HALF_WAY
+// more: by then other things are hidden. By taste.
+#define SURE_WAY 0.15f
+#define HALF_WAY 0.35f
 // Pixels of a footprint in which a counting that found nothing is believed at once: fewer are
 // seldom met by the samples.
 #define SURE_PX 64.0f
@@ -19,16 +21,18 @@
 #define LEAST_PX 1e-3f
 
 typedef struct node_state {
-    float share;   // as counted last
-    float moved;   // the odometer then
-    float prior;   // by the cell
-    uint32_t cell; // the number of the cell's visit for which that holds
-    bool counted;  // share and moved are valid
+    float share;         // as counted last
+    float moved, turned; // the odometers then
+    float prior;         // by the cell
+    uint32_t cell;       // the number of the cell's visit for which that holds
+    bool counted;        // share, moved, turned, whole are valid
+    bool whole;          // it was wholly in view
 } node_state;
 
 // Sums over the entries below a node; valid for one feed.
 typedef struct node_sum {
     float px, footprint_px;
+    float counted_px; // of the footprint
     uint32_t feed;
 } node_sum;
 
@@ -39,10 +43,12 @@ struct prom_visibility {
     node_sum *sums;
     uint32_t *touched; // of one feed, or one cell
     uint32_t touched_count, feeds;
-    // The eye's way, each piece in units of the distance to what was seen from there.
-    float odometer, sight; // sight: that distance
-    double eye[3];
-    bool has_eye;
+    // The camera's way: moved in units of the distance to what was seen, turned in units of the
+    // angle of view.
+    float moved, turned;
+    float sight; // that distance
+    prom_camera camera;
+    bool has_camera;
     const prom_view_cell *cell;
     uint32_t cell_visit; // 0: in none
 };
@@ -71,11 +77,11 @@ void prom_visibility_forget(prom_visibility *visibility)
 {
     for (uint32_t n = 0; n < visibility->model->tree_count; n++)
         visibility->nodes[n].counted = false;
-    visibility->has_eye = false;
+    visibility->has_camera = false;
 }
 
 // Adds to the sums of a node and of all above it, up to the root.
-static void add_upwards(prom_visibility *v, uint32_t node, float px, float footprint_px)
+static void add_upwards(prom_visibility *v, uint32_t node, node_sum more)
 {
     for (; node != PROM_NONE; node = v->model->parent[node]) {
         node_sum *s = &v->sums[node];
@@ -83,8 +89,9 @@ static void add_upwards(prom_visibility *v, uint32_t node, float px, float footp
             *s = (node_sum){.feed = v->feeds};
             v->touched[v->touched_count++] = node;
         }
-        s->px += px;
-        s->footprint_px += footprint_px;
+        s->px += more.px;
+        s->footprint_px += more.footprint_px;
+        s->counted_px += more.counted_px;
     }
 }
 
@@ -121,7 +128,7 @@ static void enter_cell(prom_visibility *v, const prom_camera *camera)
         uint32_t leaf = v->cells->leaves[i];
         float share = prom_view_share_decode(v->cells->shares[i]);
         float footprint = footprint_around(&view, v->model, leaf);
-        add_upwards(v, leaf, share * (footprint > 0.0f ? footprint : 1.0f), 0.0f);
+        add_upwards(v, leaf, (node_sum){.px = share * (footprint > 0.0f ? footprint : 1.0f)});
         v->nodes[leaf].prior = share;
         v->nodes[leaf].cell = v->cell_visit;
     }
@@ -155,51 +162,70 @@ static float prior_of(const prom_visibility *v, uint32_t node)
 
 // ---- counts
 
+static float moved_by(const prom_camera *from, const prom_camera *to)
+{
+    double square = 0.0;
+    for (int k = 0; k < 3; k++) {
+        double d = to->eye[k] - from->eye[k];
+        square += d * d;
+    }
+    return (float)sqrt(square);
+}
+
+// The angle between two orientations: q and -q are the same one.
+static float turned_by(const prom_camera *from, const prom_camera *to)
+{
+    float minus = 0.0f, plus = 0.0f;
+    for (int k = 0; k < 4; k++) {
+        float a = from->orientation[k], b = to->orientation[k];
+        minus += (a - b) * (a - b);
+        plus += (a + b) * (a + b);
+    }
+    return 4.0f * asinf(fminf(0.5f * sqrtf(fminf(minus, plus)), 1.0f));
+}
+
 void prom_visibility_begin(prom_visibility *visibility, const prom_camera *camera)
 {
     prom_visibility *v = visibility;
-    double square = 0.0;
-    for (int k = 0; k < 3; k++) {
-        double d = camera->eye[k] - v->eye[k];
-        square += d * d;
-        v->eye[k] = camera->eye[k];
+    if (v->has_camera) {
+        if (v->sight > 0.0f) v->moved += moved_by(&v->camera, camera) / v->sight;
+        v->turned += turned_by(&v->camera, camera) / camera->fov_y;
     }
-    if (v->has_eye && v->sight > 0.0f) v->odometer += (float)sqrt(square) / v->sight;
-    v->has_eye = true;
+    v->camera = *camera;
+    v->has_camera = true;
     look_up_cell(v, camera);
 }
 
 float prom_visibility_share(const prom_visibility *visibility, uint32_t node)
 {
-    const node_state *n = &visibility->nodes[node];
-    float prior = prior_of(visibility, node);
+    const prom_visibility *v = visibility;
+    const node_state *n = &v->nodes[node];
+    float prior = prior_of(v, node);
     if (!n->counted) return prior;
-    float moved = (visibility->odometer - n->moved) / HALF_MOVE;
-    float weight = exp2f(-moved * moved);
-    return prior + (n->share - prior) * weight;
+    float way = v->moved - n->moved + (n->whole ? 0.0f : v->turned - n->turned);
+    if (way <= SURE_WAY) return n->share;
+    float beyond = (way - SURE_WAY) / HALF_WAY;
+    return prior + (n->share - prior) * exp2f(-beyond * beyond);
 }
 
-// What was counted last, wherever that was.
-static float last_share(const prom_visibility *v, uint32_t node)
-{
-    return v->nodes[node].counted ? v->nodes[node].share : prior_of(v, node);
-}
-
+// Of a node most of whose footprint has been counted.
 static void settle(prom_visibility *v, uint32_t node)
 {
     const node_sum *sum = &v->sums[node];
     node_state *n = &v->nodes[node];
-    if (!(sum->footprint_px > LEAST_PX)) return;
+    if (!(sum->footprint_px > LEAST_PX) || sum->counted_px < 0.5f * sum->footprint_px) return;
     float now = clamp_share(sum->px / sum->footprint_px);
-    float before = last_share(v, node);
+    float before = n->counted ? n->share : prior_of(v, node);
     if (now < before) {
         float most = !n->counted ? 1.0f : sum->px > 0.0f ? FALL : FALL_TO_NOTHING;
-        float belief = fminf(sum->footprint_px / SURE_PX, most);
-        now = before + belief * (now - before);
+        now = before + fminf(sum->footprint_px / SURE_PX, most) * (now - before);
     }
-    n->share = now;
-    n->moved = v->odometer;
-    n->counted = true;
+    *n = (node_state){.share = now,
+                      .moved = v->moved,
+                      .turned = v->turned,
+                      .prior = n->prior,
+                      .cell = n->cell,
+                      .counted = true};
 }
 
 // The distance to what is seen: that of the entries, weighted by their pixels.
@@ -221,11 +247,17 @@ void prom_visibility_feed(prom_visibility *visibility, const prom_visible_count 
     begin_sums(v);
     for (size_t i = 0; i < count; i++) {
         const prom_cut_entry *e = &counts[i].entry;
-        float px =
-            counts[i].px >= 0.0f ? counts[i].px : last_share(v, e->node) * e->footprint_px;
-        add_upwards(v, e->node, px, e->footprint_px);
+        bool counted = counts[i].px >= 0.0f;
+        float known = prom_visibility_share(v, e->node) * e->footprint_px;
+        add_upwards(v, e->node,
+                    (node_sum){.px = counted ? counts[i].px : known,
+                               .footprint_px = e->footprint_px,
+                               .counted_px = counted ? e->footprint_px : 0.0f});
     }
+    // What is above the entries is partly outside as a rule.
     for (uint32_t i = 0; i < v->touched_count; i++) settle(v, v->touched[i]);
+    for (size_t i = 0; i < count; i++)
+        if (counts[i].px >= 0.0f) v->nodes[counts[i].entry.node].whole = counts[i].entry.whole;
     float sight = sight_of(counts, count);
     if (sight > 0.0f) v->sight = sight;
 }

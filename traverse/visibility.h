@@ -1,8 +1,8 @@
 // Visibility: of each node, the share of its footprint that is not hidden behind others, from
 // what earlier frames have shown and, where the model has them, from view cells.
 //
-//   every frame: prom_visibility_begin with its camera, prom_visibility_feed with what has been
-//   counted of earlier frames, select a cut with the visibility, draw
+//   every frame: prom_visibility_feed with what has been counted of the last one (or, late, of
+//   one before), prom_visibility_begin with its camera, select a cut with the visibility, draw
 //
 // Plain arrays in, no GL: any renderer that can count pixels per drawn node can feed it. Memory
 // is allocated once; the work of a call grows with the cut, that of entering a cell with what
@@ -35,9 +35,8 @@ typedef struct prom_visible_count {
     prom_cut_entry entry; // as the selector gave it
     float px;             // visible pixels; below 0: they were not counted
 } prom_visible_count;
-// The counts of a whole cut, drawn a frame or a few before the one that has begun; they are
-// taken as if they were of this one. Nodes above the entries get the sums; nodes below keep what
-// they had, and share in their ancestor's pixels.
+// The counts of a whole cut. Nodes above the entries get the sums; nodes below keep what they
+// had, and share in their ancestor's pixels.
 void prom_visibility_feed(prom_visibility *visibility, const prom_visible_count *counts,
                           size_t count);
 
