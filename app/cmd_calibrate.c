@@ -54,8 +54,8 @@ static const struct argp argp = {
 
 static void print_model(const prom_cost_model *m, bool queries)
 {
-    static const char *const shading[PROM_SHADE_COUNT] = {"plain", "textured", "masked",
-                                                          "blended", "impostor"};
+    static const char *const kinds[PROM_COST_KINDS] = {"plain",   "textured", "masked",
+                                                       "blended", "impostor", "impostor, lit"};
     printf("device       %s\n", m->renderer);
     printf("clock        %s\n", queries ? "the device's timer" : "wall clock around a finish");
     printf("samples      %u\n", m->sample_count);
@@ -63,8 +63,10 @@ static void print_model(const prom_cost_model *m, bool queries)
     printf("draw         %10.4f us\n", m->draw_ms * 1e3);
     printf("vertex       %10.4f ns\n", m->vertex_ms * 1e6);
     printf("triangle     %10.4f ns\n", m->triangle_ms * 1e6);
-    for (int i = 0; i < PROM_SHADE_COUNT; i++)
-        printf("pixel        %10.4f ns  %s\n", m->pixel_ms[i] * 1e6, shading[i]);
+    printf("edge         %10.4f ns\n", m->edge_ms * 1e6);
+    for (int i = 0; i < PROM_COST_KINDS; i++)
+        printf("pixel        %10.4f ns  %s\n", m->pixel_ms[i] * 1e6, kinds[i]);
+    printf("pixel        %10.4f ns  hidden\n", m->hidden_pixel_ms * 1e6);
     printf("mean error   %10.1f %%\n", 100 * m->mean_error);
     printf("worst under  %10.1f %%\n", 100 * m->worst_under);
     printf("margin       %10.1f %%\n", 100 * m->margin);

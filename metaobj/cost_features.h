@@ -1,15 +1,30 @@
-// Cost features: what a frame asks of the device, and timed samples of it. Plain data between the
-// renderer, which measures, and the cost model, which fits and predicts.
+// Cost features: what a frame asks of the device, and timed samples of it. Plain data between
+// the renderer, which measures, and the cost model, which fits and predicts.
 #ifndef PROM_METAOBJ_COST_FEATURES_H
 #define PROM_METAOBJ_COST_FEATURES_H
 
 #include "metaobj/base/alloc.h"
 #include "metaobj/model.h"
 
+#include <math.h>
+
+// Kinds of pixels that cost differently: those of prom_shading, where PROM_SHADE_IMPOSTOR is an
+// impostor whose pictures hold the light already, and
+enum {
+    PROM_COST_IMPOSTOR_LIT = PROM_SHADE_COUNT, // one that is lit when it is drawn
+    PROM_COST_KINDS
+};
+
+// Pixels of an impostor are those that its box covers, whether its pictures show something
+// there or not; of anything else those that show it.
 typedef struct prom_cost_features {
-    double fixed;                     // 1 for a whole frame (clear, resolve, call overhead)
+    double fixed; // 1 for a whole frame (clear, resolve, call overhead)
     double draws, vertices, triangles;
-    double pixels[PROM_SHADE_COUNT];  // shaded pixels by kind
+    double pixels[PROM_COST_KINDS]; // shaded pixels by kind
+    double hidden;                  // pixels drawn behind what was there already
+    // Length of the triangles' edges in pixels, up to a factor: the sum over draws of
+    // prom_cost_edges. Devices shade in blocks of pixels, of which an edge wastes a part.
+    double edges;
 } prom_cost_features;
 
 typedef struct prom_cost_sample {
@@ -18,5 +33,13 @@ typedef struct prom_cost_sample {
 } prom_cost_sample;
 
 typedef PROM_ARRAY(prom_cost_sample) prom_cost_samples;
+
+// Of triangles that are alike, of which shaded_px pixels show and hidden_px lie behind others:
+// n triangles that fill A pixels have edges of about 5 sqrt(n A) in all.
+static inline double prom_cost_edges(double triangles, double shaded_px, double hidden_px)
+{
+    double covered = shaded_px + hidden_px;
+    return covered > 0 ? shaded_px * sqrt(triangles / covered) : 0;
+}
 
 #endif

@@ -4,6 +4,7 @@
 #include "metaobj/base/log.h"
 #include "render/calibrate_scene.h"
 #include "render/renderer_private.h"
+#include "render/target.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,24 +19,29 @@
 
 static size_t sample_count(int effort)
 {
-    static const size_t per_shading[] = {12, 24, 40}; // 65, 125 and 205 samples in all
-    return FIXED_SAMPLES + per_shading[effort - 1] * PROM_SHADE_COUNT;
+    static const size_t per_kind[] = {12, 24, 40}; // 77, 149 and 245 samples in all
+    return FIXED_SAMPLES + per_kind[effort - 1] * PROM_COST_KINDS;
 }
 
 typedef struct calibration {
     prom_renderer *renderer;
     prom_timer *timer;
     prom_draw_list *list;
-    prom_target *target;
+    prom_target *target, *flat; // flat: without depth, so that nothing hides anything
     prom_pass pass;
     scene_kit kit;
     GLuint query;
 } calibration;
 
+static void fill(const calibration *c, const scene_plan *plan, bool solid)
+{
+    float aspect = (float)c->pass.width / (float)c->pass.height;
+    scene_fill_list(&c->kit, plan, aspect, solid, c->list);
+}
+
 static void draw(const calibration *c, const scene_plan *plan)
 {
-    if (plan)
-        scene_fill_list(&c->kit, plan, (float)c->pass.width / (float)c->pass.height, c->list);
+    if (plan) fill(c, plan, false);
     prom_target_clear(c->target, prom_sky_color);
     if (plan) prom_draw_list_submit(c->list, c->target, &c->pass);
 }
@@ -62,46 +68,59 @@ static double time_frame(const calibration *c, const scene_plan *plan)
     return count % 2 ? ms[count / 2] : 0.5 * (ms[count / 2 - 1] + ms[count / 2]);
 }
 
-// Pixels that the plan's items cover, each layer of blended ones counted, as the device counts
-// them; also the frame that is drawn before any is timed.
-static double count_pixels(const calibration *c, const scene_plan *plan)
+// Pixels of the list that pass the depth test of a target, as the device counts them.
+static double count_pixels(const calibration *c, prom_target *target)
 {
     GLuint64 samples = 0;
+    prom_target_clear(target, prom_sky_color);
     glBeginQuery(GL_SAMPLES_PASSED, c->query);
-    draw(c, plan);
+    prom_draw_list_submit(c->list, target, &c->pass);
     glEndQuery(GL_SAMPLES_PASSED);
     glGetQueryObjectui64v(c->query, GL_QUERY_RESULT, &samples);
     return (double)samples;
 }
 
+static prom_cost_features count_features(const calibration *c, const scene_plan *plan)
+{
+    prom_cost_features f = {.fixed = 1};
+    fill(c, plan, true);
+    prom_renderer_take_stats(c->renderer);
+    double shaded = count_pixels(c, c->target);
+    prom_draw_stats stats = prom_renderer_take_stats(c->renderer);
+    f.draws = (double)stats.draws;
+    f.vertices = (double)stats.vertices;
+    f.triangles = (double)stats.triangles;
+    f.pixels[plan->kind] = shaded;
+    f.hidden = fmax(count_pixels(c, c->flat) - shaded, 0.0);
+    f.edges = prom_cost_edges(f.triangles, shaded, f.hidden);
+    return f;
+}
+
 static prom_cost_sample take_sample(const calibration *c, const scene_plan *plan)
 {
     prom_cost_sample sample = {.features.fixed = 1};
-    double pixels = count_pixels(c, plan);
-    if (plan) {
-        prom_renderer_take_stats(c->renderer);
-        draw(c, plan);
-        prom_draw_stats stats = prom_renderer_take_stats(c->renderer);
-        sample.features.draws = (double)stats.draws;
-        sample.features.vertices = (double)stats.vertices;
-        sample.features.triangles = (double)stats.triangles;
-        sample.features.pixels[plan->shading] = pixels;
-    }
+    if (plan) sample.features = count_features(c, plan);
+    draw(c, plan); // to warm
     sample.ms = time_frame(c, plan);
     return sample;
 }
 
-// All samples in a fixed order: some empty frames, then the shadings in turn.
+// The i-th sample draws this, or nothing.
+static bool plan_of(const calibration *c, size_t i, scene_plan *plan)
+{
+    if (i < FIXED_SAMPLES) return false;
+    *plan = scene_plan_at(&c->kit, (uint32_t)(i % PROM_COST_KINDS),
+                          (uint32_t)(i / PROM_COST_KINDS));
+    return true;
+}
+
+// All samples in a fixed order: some empty frames, then the kinds in turn.
 static void take_all(const calibration *c, int effort, prom_cost_sample *samples,
                      prom_progress *progress)
 {
     for (size_t i = 0; i < sample_count(effort); i++) {
         scene_plan plan;
-        bool empty = i < FIXED_SAMPLES;
-        if (!empty)
-            plan = scene_plan_at(&c->kit, (prom_shading)(i % PROM_SHADE_COUNT),
-                                 (uint32_t)(i / PROM_SHADE_COUNT));
-        prom_cost_sample sample = take_sample(c, empty ? NULL : &plan);
+        prom_cost_sample sample = take_sample(c, plan_of(c, i, &plan) ? &plan : NULL);
         if (samples[i].features.fixed == 0 || sample.ms < samples[i].ms) samples[i] = sample;
         prom_progress_step(progress, 1);
     }
@@ -126,8 +145,8 @@ static double measure_noise(const calibration *c, const prom_cost_sample *sample
     size_t best = FIXED_SAMPLES;
     for (size_t i = FIXED_SAMPLES; i < count; i++)
         if (fabs(samples[i].ms - NOISE_MS) < fabs(samples[best].ms - NOISE_MS)) best = i;
-    scene_plan plan = scene_plan_at(&c->kit, (prom_shading)(best % PROM_SHADE_COUNT),
-                                    (uint32_t)(best / PROM_SHADE_COUNT));
+    scene_plan plan;
+    plan_of(c, best, &plan);
     double ms[NOISE_FRAMES];
     for (int i = 0; i < NOISE_FRAMES; i++) {
         prom_timer_begin(c->timer);
@@ -136,6 +155,17 @@ static double measure_noise(const calibration *c, const prom_cost_sample *sample
     }
     qsort(ms, NOISE_FRAMES, sizeof *ms, compare_doubles);
     return ms[NOISE_FRAMES * 95 / 100] / ms[NOISE_FRAMES / 2] - 1.0;
+}
+
+static prom_target *create_flat(uint32_t width, uint32_t height, prom_error *error)
+{
+    prom_target *target = prom_target_create(width, height, false, error);
+    if (!target) return NULL;
+    const GLuint framebuffers[] = {target->framebuffer, target->plain};
+    for (int i = 0; i < 2; i++)
+        glNamedFramebufferRenderbuffer(framebuffers[i], GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
+                                       0);
+    return target;
 }
 
 // The materials are the one thing that truncating does not bring back.
@@ -157,7 +187,11 @@ prom_status prom_calibrate_run(prom_renderer *renderer, prom_timer *timer, uint3
     c.pass =
         (prom_pass){.projection = GLM_MAT4_IDENTITY_INIT, .width = width, .height = height};
     c.target = prom_target_create(width, height, false, error);
-    if (!c.target) return PROM_ERR_UNSUPPORTED;
+    c.flat = c.target ? create_flat(width, height, error) : NULL;
+    if (!c.flat) {
+        if (c.target) prom_target_destroy(c.target);
+        return PROM_ERR_UNSUPPORTED;
+    }
     uint32_t meshes = prom_renderer_mesh_count(renderer), material_count;
     uint32_t textures = prom_renderer_texture_count(renderer);
     prom_draw_stats stats = renderer->stats;
@@ -178,6 +212,7 @@ prom_status prom_calibrate_run(prom_renderer *renderer, prom_timer *timer, uint3
     glDeleteQueries(1, &c.query);
     prom_draw_list_destroy(c.list);
     prom_target_destroy(c.target);
+    prom_target_destroy(c.flat);
     prom_renderer_truncate(renderer, meshes, textures);
     prom_renderer_set_materials(renderer, materials, material_count);
     prom_free(materials);

@@ -1,5 +1,5 @@
-// Calibration draws: synthetic scenes that vary draws, vertices, triangles and pixels by
-// shading kind, each timed for at least 5 ms, as samples for the cost model's fit
+// Calibration draws: synthetic scenes that vary draws, vertices, triangles, pixels by
+// kind and what is hidden, each timed for at least 5 ms, as samples for the cost model's fit
 // (traverse/cost.h).
 #ifndef PROM_RENDER_CALIBRATE_H
 #define PROM_RENDER_CALIBRATE_H

@@ -8,6 +8,7 @@
 #define PICTURE_SIZE 256u
 #define MAX_TRIANGLES 400000u
 #define MAX_ITEMS 2000.0
+#define MAX_LAYERS 6u
 
 // Stacks and slices of the balls: triangles = 2 * slices * (stacks - 1).
 static const struct {
@@ -136,37 +137,37 @@ static double log_between(double low, double high, double t)
     return low * pow(high / low, t);
 }
 
-scene_plan scene_plan_at(const scene_kit *kit, prom_shading shading, uint32_t index)
+scene_plan scene_plan_at(const scene_kit *kit, uint32_t kind, uint32_t index)
 {
     // Steps 1/g, 1/g^2, 1/g^3 with g^4 = g + 1 (Roberts 2018). The shadings start apart, so
     // that together they fill the gaps.
-    index += 1000 * shading;
-    scene_plan plan = {.shading = shading, .layers = 1, .lit_picture = index & 1};
-    plan.items = (uint32_t)log_between(1, MAX_ITEMS + 1, spread(index, 0.8191725133961645));
-    double side = spread(index, 0.6710436067037893);
+    uint32_t offset = index + 1000 * kind;
+    scene_plan plan = {.kind = kind, .layers = 1};
+    plan.items = (uint32_t)log_between(1, MAX_ITEMS + 1, spread(offset, 0.8191725133961645));
+    double side = spread(offset, 0.6710436067037893);
     plan.area = (float)(0.02 + 0.98 * side * side);
-    plan.detail = (uint32_t)(SCENE_DETAILS * spread(index, 0.5497004779019703));
-    if (shading == PROM_SHADE_BLENDED) plan.layers = 1 + index % 4;
-    if (shading != PROM_SHADE_IMPOSTOR &&
-        plan.items > MAX_TRIANGLES / kit->triangles[plan.detail])
+    plan.detail = (uint32_t)(SCENE_DETAILS * spread(offset, 0.5497004779019703));
+    bool impostor = kind == PROM_SHADE_IMPOSTOR || kind == PROM_COST_IMPOSTOR_LIT;
+    if (!impostor) plan.layers = 1 + index % MAX_LAYERS;
+    if (!impostor && plan.items > MAX_TRIANGLES / kit->triangles[plan.detail])
         plan.items = MAX_TRIANGLES / kit->triangles[plan.detail];
     if (plan.items < plan.layers) plan.items = plan.layers;
     return plan;
 }
 
-static prom_draw_item make_item(const scene_kit *kit, const scene_plan *plan)
+static prom_draw_item make_item(const scene_kit *kit, const scene_plan *plan, bool solid)
 {
-    prom_draw_item item = {.mesh = kit->meshes[plan->detail][plan->shading],
-                           .texture = PROM_NONE};
-    if (plan->shading == PROM_SHADE_IMPOSTOR) {
-        item.mesh = kit->box;
-        item.texture = plan->lit_picture ? kit->pictures_lit : kit->pictures_unlit;
-        item.flags = plan->lit_picture ? 0 : PROM_REP_UNLIT;
-    }
+    bool lit = plan->kind == PROM_COST_IMPOSTOR_LIT;
+    if (!lit && plan->kind != PROM_SHADE_IMPOSTOR)
+        return (prom_draw_item){.mesh = kit->meshes[plan->detail][plan->kind],
+                                .texture = PROM_NONE};
+    prom_draw_item item = {
+        .mesh = kit->box, .texture = PROM_NONE, .flags = lit ? 0 : PROM_REP_UNLIT};
+    if (!solid) item.texture = lit ? kit->pictures_lit : kit->pictures_unlit;
     return item;
 }
 
-void scene_fill_list(const scene_kit *kit, const scene_plan *plan, float aspect,
+void scene_fill_list(const scene_kit *kit, const scene_plan *plan, float aspect, bool solid,
                      prom_draw_list *list)
 {
     // Cells that are about square in pixels; x and y of clip space run from -1 to 1.
@@ -177,13 +178,13 @@ void scene_fill_list(const scene_kit *kit, const scene_plan *plan, float aspect,
     float width = 2.0f / (float)columns, height = 2.0f / (float)rows;
     float reach = 0.5f * sqrtf(plan->area); // half a cell times the side that is covered
     prom_draw_list_reset(list);
-    prom_draw_item item = make_item(kit, plan);
+    prom_draw_item item = make_item(kit, plan, solid);
     for (uint32_t i = 0; i < plan->items; i++) {
         uint32_t cell = i % cells, layer = i / cells;
         item.id = i;
         item.origin[0] = -1 + width * ((float)(cell % columns) + 0.5f);
         item.origin[1] = -1 + height * ((float)(cell / columns) + 0.5f);
-        item.origin[2] = 0.2f + 0.15f * (float)layer;
+        item.origin[2] = 0.1f + 0.15f * (float)layer;
         item.basis[0] = width * reach;
         item.basis[4] = height * reach;
         item.basis[8] = 0.05f;

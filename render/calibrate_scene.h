@@ -3,7 +3,7 @@
 #ifndef PROM_RENDER_CALIBRATE_SCENE_H
 #define PROM_RENDER_CALIBRATE_SCENE_H
 
-#include "metaobj/model.h"
+#include "metaobj/cost_features.h"
 #include "render/renderer.h"
 
 #define SCENE_DETAILS 5 // sizes of the meshes
@@ -11,11 +11,10 @@
 // What a sample draws: items side by side in a grid over the picture, each a ball (or, for
 // impostors, a box), in as many layers behind each other as `layers` says.
 typedef struct scene_plan {
-    prom_shading shading;
+    uint32_t kind;          // prom_shading or PROM_COST_IMPOSTOR_LIT
     uint32_t items, detail; // detail: index of a mesh size; unused for impostors
-    uint32_t layers;        // over 1 for blended ones only
+    uint32_t layers;        // 1 for impostors, whose pictures do not hide all behind them
     float area;             // of a cell that its item covers, about
-    bool lit_picture;       // impostors: pictures of albedo and normals
 } scene_plan;
 
 // Meshes, textures and materials of all samples, uploaded after whatever the renderer holds.
@@ -27,11 +26,12 @@ typedef struct scene_kit {
 
 // false when the device has no memory left. Replaces the renderer's materials.
 bool scene_kit_upload(scene_kit *kit, prom_renderer *renderer);
-// The plan of a shading's index-th sample: spread evenly over sizes, numbers and details
+// The plan of a kind's index-th sample: spread evenly over sizes, numbers and details
 // however many samples are taken (quasi-random), and the same everywhere.
-scene_plan scene_plan_at(const scene_kit *kit, prom_shading shading, uint32_t index);
-// Fills and prepares the list. Draw it with the identity as projection.
-void scene_fill_list(const scene_kit *kit, const scene_plan *plan, float aspect,
+scene_plan scene_plan_at(const scene_kit *kit, uint32_t kind, uint32_t index);
+// Fills and prepares the list, front to back. Draw it with the identity as projection. solid:
+// impostors are boxes without pictures.
+void scene_fill_list(const scene_kit *kit, const scene_plan *plan, float aspect, bool solid,
                      prom_draw_list *list);
 
 #endif

@@ -26,7 +26,9 @@ static void make_samples(const prom_cost_model *truth, uint64_t *seed, double no
                                   .draws = 1 + random_below(seed, 3000),
                                   .vertices = triangles * random_between(seed, 0.5f, 2.5f),
                                   .triangles = triangles};
-        for (int k = 0; k < PROM_SHADE_COUNT; k++)
+        f->hidden = random_below(seed, 2) ? random_between(seed, 0, 3e6f) : 0;
+        f->edges = random_between(seed, 0, 1) * sqrt(1e6 * triangles);
+        for (int k = 0; k < PROM_COST_KINDS; k++)
             if (random_below(seed, 2)) f->pixels[k] = random_between(seed, 0, 3e6f);
         double factor = 1.0 + noise * (random_unit(seed) + random_unit(seed) - 1.0);
         samples[i].ms = prom_cost_predict(truth, f) * factor;
@@ -51,7 +53,9 @@ static void the_fit_recovers_a_known_model(void **state)
         assert_true(near_to(fit.draw_ms, truth.draw_ms, 1e-3));
         assert_true(near_to(fit.vertex_ms, truth.vertex_ms, 1e-3));
         assert_true(near_to(fit.triangle_ms, truth.triangle_ms, 1e-3));
-        for (int k = 0; k < PROM_SHADE_COUNT; k++)
+        assert_true(near_to(fit.edge_ms, truth.edge_ms, 1e-3));
+        assert_true(near_to(fit.hidden_pixel_ms, truth.hidden_pixel_ms, 1e-3));
+        for (int k = 0; k < PROM_COST_KINDS; k++)
             assert_true(near_to(fit.pixel_ms[k], truth.pixel_ms[k], 1e-3));
         assert_true(fit.mean_error < 1e-4 && fit.worst_under < 1e-3);
         assert_int_equal(fit.sample_count, SAMPLES);
@@ -80,11 +84,11 @@ static void coefficients_are_never_negative(void **state)
         if (random_below(&seed, 2)) truth.draw_ms = 0.0;
         if (random_below(&seed, 2)) truth.pixel_ms[PROM_SHADE_BLENDED] = 0.0;
         make_samples(&truth, &seed, 0.5, samples);
-        size_t count = 12 + random_below(&seed, SAMPLES - 12);
+        size_t count = 14 + random_below(&seed, SAMPLES - 14);
         assert_int_equal(prom_cost_fit(samples, count, &fit, NULL), PROM_OK);
         assert_true(fit.fixed_ms >= 0 && fit.draw_ms >= 0 && fit.vertex_ms >= 0 &&
-                    fit.triangle_ms >= 0);
-        for (int k = 0; k < PROM_SHADE_COUNT; k++) assert_true(fit.pixel_ms[k] >= 0);
+                    fit.triangle_ms >= 0 && fit.edge_ms >= 0 && fit.hidden_pixel_ms >= 0);
+        for (int k = 0; k < PROM_COST_KINDS; k++) assert_true(fit.pixel_ms[k] >= 0);
         assert_true(isfinite(fit.mean_error) && isfinite(fit.worst_under));
     }
 }
@@ -100,17 +104,19 @@ static void the_fit_is_a_minimum(void **state)
         truth.vertex_ms = 0.0;
         make_samples(&truth, &seed, 0.4, samples);
         assert_int_equal(prom_cost_fit(samples, SAMPLES, &fit, NULL), PROM_OK);
-        double at[9], least = -1.0;
-        double *fields[9] = {&fit.fixed_ms, &fit.draw_ms, &fit.vertex_ms, &fit.triangle_ms};
-        for (int k = 0; k < PROM_SHADE_COUNT; k++) fields[4 + k] = &fit.pixel_ms[k];
-        for (int a = 0; a < 9; a++) at[a] = *fields[a];
-        for (int try = 0; try < 37; try++) {
-            for (int a = 0; a < 9; a++) *fields[a] = at[a];
+        enum { FIELDS = 6 + PROM_COST_KINDS };
+        double at[FIELDS], least = -1.0;
+        double *fields[FIELDS] = {&fit.fixed_ms,    &fit.draw_ms, &fit.vertex_ms,
+                                  &fit.triangle_ms, &fit.edge_ms, &fit.hidden_pixel_ms};
+        for (int k = 0; k < PROM_COST_KINDS; k++) fields[6 + k] = &fit.pixel_ms[k];
+        for (int a = 0; a < FIELDS; a++) at[a] = *fields[a];
+        for (int try = 0; try < 1 + 4 * FIELDS; try++) {
+            for (int a = 0; a < FIELDS; a++) *fields[a] = at[a];
             if (try) {
-                double *x = fields[(try - 1) % 9];
-                double size = try <= 18 ? 1e-2 : 1e-4;
+                double *x = fields[(try - 1) % FIELDS];
+                double size = try <= 2 * FIELDS ? 1e-2 : 1e-4;
                 double change = size * (*x > 0 ? *x : truth.triangle_ms);
-                *x += (try - 1) / 9 % 2 ? change : -change;
+                *x += (try - 1) / FIELDS % 2 ? change : -change;
                 if (*x < 0) continue;
             }
             double sum = 0.0;
@@ -143,6 +149,52 @@ static void kinds_without_samples_cost_what_textures_do(void **state)
     assert_true(fit.pixel_ms[PROM_SHADE_IMPOSTOR] == fit.pixel_ms[PROM_SHADE_TEXTURED]);
     assert_true(
         near_to(fit.pixel_ms[PROM_SHADE_TEXTURED], truth.pixel_ms[PROM_SHADE_TEXTURED], 1e-3));
+}
+
+// A part of what textured pixels cost; see cost.c.
+static void hidden_pixels_without_samples_have_a_default(void **state)
+{
+    (void)state;
+    uint64_t seed = 8;
+    static prom_cost_sample samples[SAMPLES];
+    prom_cost_model truth = random_cost(&seed), fit;
+    make_samples(&truth, &seed, 0.0, samples);
+    for (int i = 0; i < SAMPLES; i++) {
+        samples[i].features.hidden = 0;
+        samples[i].ms = prom_cost_predict(&truth, &samples[i].features);
+    }
+    assert_int_equal(prom_cost_fit(samples, SAMPLES, &fit, NULL), PROM_OK);
+    assert_true(near_to(fit.hidden_pixel_ms, 0.27 * truth.pixel_ms[PROM_SHADE_TEXTURED], 1e-3));
+}
+
+// A representation costs what a frame of its features does.
+static void a_representation_costs_its_features(void **state)
+{
+    (void)state;
+    uint64_t seed = 9;
+    for (int round = 0; round < 100; round++) {
+        prom_cost_model model = random_cost(&seed);
+        prom_representation rep = {.shading = random_below(&seed, PROM_SHADE_COUNT),
+                                   .flags = random_below(&seed, 2) ? PROM_REP_UNLIT : 0,
+                                   .draws = 1 + random_below(&seed, 5),
+                                   .vertices = random_below(&seed, 100000),
+                                   .triangles = 1 + random_below(&seed, 100000)};
+        double shaded = random_between(&seed, 0, 1e6f), hidden = random_between(&seed, 0, 1e6f);
+        prom_cost_features f = {.draws = rep.draws,
+                                .vertices = rep.vertices,
+                                .triangles = rep.triangles,
+                                .hidden = hidden,
+                                .edges = prom_cost_edges(rep.triangles, shaded, hidden)};
+        bool lit = rep.shading == PROM_SHADE_IMPOSTOR && !rep.flags;
+        f.pixels[lit ? PROM_COST_IMPOSTOR_LIT : rep.shading] = shaded;
+        assert_true(near_to(prom_cost_of_rep(&model, &rep, shaded, hidden),
+                            prom_cost_predict(&model, &f), 1e-9));
+        // Half of the triangles show half of the pixels, and half of the edges.
+        double half = prom_cost_edges(rep.triangles, shaded, shaded);
+        assert_true(near_to(half, prom_cost_edges(0.5 * rep.triangles, shaded, 0), 1e-9));
+        assert_true(prom_cost_edges(rep.triangles, 0, 0) == 0);
+        assert_true(prom_cost_edges(rep.triangles, 0, hidden) == 0);
+    }
 }
 
 static void unusable_samples_are_refused(void **state)
@@ -319,6 +371,8 @@ static void broken_profiles_are_refused(void **state)
         {"\"fixed_ms\": ", "\"fixed_ms\": -"},
         {"\"margin\": 0.1", "\"margin\": 1.5"},
         {"\"hidden_pixel_ms\": ", "\"hidden_pixel_ms\": -"},
+        {"\"edge_ms\": ", "\"edge_ms\": -"},
+        {"\"impostor_lit\"", "\"impostor_other\""},
         {"\"version\": 2", "\"version\": 1"},
         {"promenade-cost", "other-cost"},
         {"\"draw_ms\": ", "\"draw_ms\": \"x\", \"y\": "},
@@ -419,6 +473,8 @@ int main(void)
         cmocka_unit_test(coefficients_are_never_negative),
         cmocka_unit_test(the_fit_is_a_minimum),
         cmocka_unit_test(kinds_without_samples_cost_what_textures_do),
+        cmocka_unit_test(hidden_pixels_without_samples_have_a_default),
+        cmocka_unit_test(a_representation_costs_its_features),
         cmocka_unit_test(unusable_samples_are_refused),
         cmocka_unit_test(profiles_come_back_as_they_went),
         cmocka_unit_test(profiles_without_a_size_load),

@@ -47,16 +47,21 @@ static void calibration_covers_all_features(void **state)
         most.vertices = fmax(most.vertices, f->vertices);
         most.triangles = fmax(most.triangles, f->triangles);
         int shadings = 0;
-        for (int s = 0; s < PROM_SHADE_COUNT; s++) {
+        most.hidden = fmax(most.hidden, f->hidden);
+        most.edges = fmax(most.edges, f->edges);
+        for (int s = 0; s < PROM_COST_KINDS; s++) {
             most.pixels[s] = fmax(most.pixels[s], f->pixels[s]);
             shadings += f->pixels[s] > 0;
-            // Opaque items stand side by side.
+            // Of opaque items in layers one shows.
             assert_true(s == PROM_SHADE_BLENDED || f->pixels[s] <= 320 * 180);
         }
         assert_true(shadings <= 1);
     }
     assert_true(most.draws >= 500 && most.triangles >= 100000 && most.vertices >= 50000);
-    for (int s = 0; s < PROM_SHADE_COUNT; s++) assert_true(most.pixels[s] > 0.25 * 320 * 180);
+    // Behind up to five layers.
+    assert_true(most.hidden > 2.0 * 320 * 180 && most.hidden < 5.0 * 320 * 180);
+    assert_true(most.edges > 320 * 180 && isfinite(most.edges));
+    for (int s = 0; s < PROM_COST_KINDS; s++) assert_true(most.pixels[s] > 0.25 * 320 * 180);
     assert_true(most.pixels[PROM_SHADE_BLENDED] > 320 * 180 * 0.7);
 
     // What stood before stands still.

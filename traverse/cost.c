@@ -9,9 +9,9 @@
 #include <math.h>
 #include <string.h>
 
-enum { COLUMNS = 4 + PROM_SHADE_COUNT };
-// What a hidden pixel costs against a shaded one. Measured on llvmpipe with six full layers:
-// 7.0 ms, where one takes 3.0.
+enum { EDGES = 4, HIDDEN, PIXELS, COLUMNS = PIXELS + PROM_COST_KINDS };
+// What a hidden pixel costs against a textured one where no sample has any. Measured on
+// llvmpipe with six full layers: 7.0 ms, where one takes 3.0.
 #define HIDDEN_SHARE 0.27
 #define DEFAULT_MARGIN 0.1
 
@@ -21,7 +21,9 @@ static void columns_of(const prom_cost_features *f, double out[COLUMNS])
     out[1] = f->draws;
     out[2] = f->vertices;
     out[3] = f->triangles;
-    for (int k = 0; k < PROM_SHADE_COUNT; k++) out[4 + k] = f->pixels[k];
+    out[EDGES] = f->edges;
+    out[HIDDEN] = f->hidden;
+    for (int k = 0; k < PROM_COST_KINDS; k++) out[PIXELS + k] = f->pixels[k];
 }
 
 static void set_coefficients(prom_cost_model *model, const double x[COLUMNS])
@@ -30,7 +32,9 @@ static void set_coefficients(prom_cost_model *model, const double x[COLUMNS])
     model->draw_ms = x[1];
     model->vertex_ms = x[2];
     model->triangle_ms = x[3];
-    for (int k = 0; k < PROM_SHADE_COUNT; k++) model->pixel_ms[k] = x[4 + k];
+    model->edge_ms = x[EDGES];
+    model->hidden_pixel_ms = x[HIDDEN];
+    for (int k = 0; k < PROM_COST_KINDS; k++) model->pixel_ms[k] = x[PIXELS + k];
 }
 
 // ---- non-negative least squares on gram * x = rhs
@@ -173,14 +177,17 @@ static size_t present_columns(const normal_equations *e)
     return n;
 }
 
-// Shading kinds without samples cost what textured pixels cost, or else the dearest known kind.
+// Shading kinds without samples cost what textured pixels cost, or else the dearest known kind;
+// hidden pixels a part of it.
 static void fill_missing_kinds(prom_cost_model *model, const normal_equations *e)
 {
     double fallback = 0.0;
-    for (int k = 0; k < PROM_SHADE_COUNT; k++) fallback = fmax(fallback, model->pixel_ms[k]);
-    if (e->present[4 + PROM_SHADE_TEXTURED]) fallback = model->pixel_ms[PROM_SHADE_TEXTURED];
-    for (int k = 0; k < PROM_SHADE_COUNT; k++)
-        if (!e->present[4 + k]) model->pixel_ms[k] = fallback;
+    for (int k = 0; k < PROM_COST_KINDS; k++) fallback = fmax(fallback, model->pixel_ms[k]);
+    if (e->present[PIXELS + PROM_SHADE_TEXTURED])
+        fallback = model->pixel_ms[PROM_SHADE_TEXTURED];
+    for (int k = 0; k < PROM_COST_KINDS; k++)
+        if (!e->present[PIXELS + k]) model->pixel_ms[k] = fallback;
+    if (!e->present[HIDDEN]) model->hidden_pixel_ms = HIDDEN_SHARE * fallback;
 }
 
 static void solve_into(const normal_equations *e, prom_cost_model *model)
@@ -264,7 +271,6 @@ prom_status prom_cost_fit(const prom_cost_sample *samples, size_t count, prom_co
     *model = (prom_cost_model){.margin = DEFAULT_MARGIN};
     model->sample_count = count > UINT32_MAX ? UINT32_MAX : (uint32_t)count;
     solve_into(&e, model);
-    model->hidden_pixel_ms = HIDDEN_SHARE * model->pixel_ms[PROM_SHADE_TEXTURED];
     measure_errors(samples, count, columns, model);
     return PROM_OK;
 }
@@ -275,9 +281,16 @@ double prom_cost_predict(const prom_cost_model *model, const prom_cost_features 
 {
     double ms = model->fixed_ms * features->fixed + model->draw_ms * features->draws +
                 model->vertex_ms * features->vertices +
-                model->triangle_ms * features->triangles;
-    for (int k = 0; k < PROM_SHADE_COUNT; k++) ms += model->pixel_ms[k] * features->pixels[k];
+                model->triangle_ms * features->triangles + model->edge_ms * features->edges +
+                model->hidden_pixel_ms * features->hidden;
+    for (int k = 0; k < PROM_COST_KINDS; k++) ms += model->pixel_ms[k] * features->pixels[k];
     return ms;
+}
+
+uint32_t prom_cost_kind(const prom_representation *rep)
+{
+    bool lit = rep->shading == PROM_SHADE_IMPOSTOR && !(rep->flags & PROM_REP_UNLIT);
+    return lit ? PROM_COST_IMPOSTOR_LIT : rep->shading;
 }
 
 double prom_cost_of_rep(const prom_cost_model *model, const prom_representation *rep,
@@ -285,6 +298,8 @@ double prom_cost_of_rep(const prom_cost_model *model, const prom_representation 
 {
     assert(rep->shading < PROM_SHADE_COUNT);
     return model->draw_ms * rep->draws + model->vertex_ms * rep->vertices +
-           model->triangle_ms * rep->triangles + model->pixel_ms[rep->shading] * shaded_px +
-           model->hidden_pixel_ms * hidden_px;
+           model->triangle_ms * rep->triangles +
+           model->pixel_ms[prom_cost_kind(rep)] * shaded_px +
+           model->hidden_pixel_ms * hidden_px +
+           model->edge_ms * prom_cost_edges(rep->triangles, shaded_px, hidden_px);
 }

@@ -1,5 +1,6 @@
 // The cost model (DESIGN 6): predicted milliseconds = fixed + sum over the cut of
-// k_draw*draws + k_vertex*vertices + k_triangle*triangles + k_pixel[kind]*shaded pixels.
+// k_draw*draws + k_vertex*vertices + k_triangle*triangles + k_edge*edges + k_pixel[kind]*shaded
+// pixels + k_hidden*hidden pixels, over the features of cost_features.h.
 #ifndef PROM_TRAVERSE_COST_H
 #define PROM_TRAVERSE_COST_H
 
@@ -7,7 +8,8 @@
 #include "metaobj/cost_features.h"
 
 typedef struct prom_cost_model {
-    double fixed_ms, draw_ms, vertex_ms, triangle_ms, pixel_ms[PROM_SHADE_COUNT];
+    double fixed_ms, draw_ms, vertex_ms, triangle_ms, pixel_ms[PROM_COST_KINDS];
+    double edge_ms;         // see prom_cost_features: edges
     double hidden_pixel_ms; // a pixel drawn behind what is there already (early z)
     double mean_error;      // of the fit: mean |predicted/actual - 1|
     double worst_under;     // greatest actual/predicted - 1
@@ -20,11 +22,14 @@ typedef struct prom_cost_model {
 // Non-negative least squares with 1/T weights (relative errors). Fails with fewer samples than
 // coefficients (of features that occur at all) or a sample that is not finite. Sets every
 // field: errors are measured on samples that the fit had not seen where there are enough;
-// shading kinds without samples cost what textured pixels do; margin 0.1, no size and an empty
+// shading kinds without samples cost what textured pixels do, hidden pixels without samples
+// 0.27 of it; margin 0.1, no size and an empty
 // renderer are for the caller to replace.
 prom_status prom_cost_fit(const prom_cost_sample *samples, size_t count, prom_cost_model *model,
                           prom_error *error);
 double prom_cost_predict(const prom_cost_model *model, const prom_cost_features *features);
+// The kind of a representation's pixels: an index into pixel_ms.
+uint32_t prom_cost_kind(const prom_representation *rep);
 // A representation that in this view shades `shaded_px` pixels and covers `hidden_px` more
 // behind other things.
 double prom_cost_of_rep(const prom_cost_model *model, const prom_representation *rep,

@@ -18,8 +18,8 @@
 #define FILE_BYTES_MAX 65536
 #define SIDE_MAX 65536
 
-static const char *const shading_keys[PROM_SHADE_COUNT] = {"plain", "textured", "masked",
-                                                           "blended", "impostor"};
+static const char *const shading_keys[PROM_COST_KINDS] = {
+    "plain", "textured", "masked", "blended", "impostor", "impostor_lit"};
 
 typedef struct field {
     const char *key;
@@ -32,9 +32,11 @@ typedef struct field {
 #name, offsetof(prom_cost_model, name), least, most                                    \
     }
 static const field fields[] = {
-    FIELD(fixed_ms, 0.0, 1e6),    FIELD(draw_ms, 0.0, 1e6),         FIELD(vertex_ms, 0.0, 1e6),
-    FIELD(triangle_ms, 0.0, 1e6), FIELD(hidden_pixel_ms, 0.0, 1e6), FIELD(mean_error, 0.0, 1e6),
-    FIELD(worst_under, 0.0, 1e6), FIELD(margin, 0.0, 0.9),
+    FIELD(fixed_ms, 0.0, 1e6),   FIELD(draw_ms, 0.0, 1e6),
+    FIELD(vertex_ms, 0.0, 1e6),  FIELD(triangle_ms, 0.0, 1e6),
+    FIELD(edge_ms, 0.0, 1e6),    FIELD(hidden_pixel_ms, 0.0, 1e6),
+    FIELD(mean_error, 0.0, 1e6), FIELD(worst_under, 0.0, 1e6),
+    FIELD(margin, 0.0, 0.9),
 };
 enum { FIELD_COUNT = sizeof fields / sizeof *fields };
 
@@ -75,7 +77,7 @@ static json_t *to_json(const prom_cost_model *model)
         memcpy(&value, (const char *)model + fields[i].offset, sizeof value);
         json_object_set_new(root, fields[i].key, json_real(value));
     }
-    for (int k = 0; k < PROM_SHADE_COUNT; k++)
+    for (int k = 0; k < PROM_COST_KINDS; k++)
         json_object_set_new(pixel, shading_keys[k], json_real(model->pixel_ms[k]));
     json_object_set_new(root, "pixel_ms", pixel);
     return root;
@@ -134,7 +136,7 @@ static const char *model_fault(const prom_cost_model *model)
         memcpy(&value, (const char *)model + fields[i].offset, sizeof value);
         if (!in_range(value, fields[i].least, fields[i].most)) return fields[i].key;
     }
-    for (int k = 0; k < PROM_SHADE_COUNT; k++)
+    for (int k = 0; k < PROM_COST_KINDS; k++)
         if (!in_range(model->pixel_ms[k], 0.0, 1e6)) return "pixel_ms";
     return NULL;
 }
@@ -182,8 +184,8 @@ static const char *from_json(const json_t *root, prom_cost_model *model)
         memcpy((char *)model + fields[i].offset, &value, sizeof value);
     }
     const json_t *pixel = json_object_get(root, "pixel_ms");
-    if (json_object_size(pixel) != PROM_SHADE_COUNT) return "pixel_ms";
-    for (int k = 0; k < PROM_SHADE_COUNT; k++)
+    if (json_object_size(pixel) != PROM_COST_KINDS) return "pixel_ms";
+    for (int k = 0; k < PROM_COST_KINDS; k++)
         if (!get_number(pixel, shading_keys[k], &model->pixel_ms[k])) return "pixel_ms";
     // format, version, renderer, sample_count and pixel_ms are the other five.
     size_t keys = FIELD_COUNT + 5;
