@@ -122,9 +122,10 @@ void prom_build_end_progress(prom_build_state *b, prom_progress *progress);
 
 // ---- keys of units: hashes of all that their results depend on (unit_keys.c)
 
-// Sets program_key; device_key, once there is a device; material_keys, once there are textures.
-void prom_keys_of_program(prom_build_state *b);
-void prom_keys_of_device(prom_build_state *b);
+// Of this program with its libraries, and of that on a device.
+uint64_t prom_key_of_program(void);
+uint64_t prom_key_of_device(const prom_context *context, uint64_t program_key);
+// Sets material_keys, once there are textures.
 void prom_keys_of_materials(prom_build_state *b);
 uint64_t prom_key_of_levels(const prom_build_state *b, uint32_t shape);
 uint64_t prom_key_of_leaf(const prom_build_state *b, uint32_t shape);

@@ -79,8 +79,9 @@ static prom_status open_store(prom_build_state *b, prom_error *error)
         [PROM_BUILD_FROM_START] = PROM_UNIT_LEVELS,
         [PROM_BUILD_FROM_LEAVES] = PROM_UNIT_LEAF,
         [PROM_BUILD_FROM_CLUSTERS] = PROM_UNIT_MERGE,
+        [PROM_BUILD_FROM_VIEW_CELLS] = PROM_UNIT_VIEW_CELL,
     };
-    prom_keys_of_program(b);
+    b->program_key = prom_key_of_program();
     b->store = prom_store_open(b->out_path, redo[b->options->from], error);
     return b->store ? PROM_OK : error->status;
 }
@@ -97,7 +98,7 @@ static prom_status open_tools(prom_build_state *b, prom_error *error)
     if (!b->renderer) return error->status;
     b->baker = prom_baker_create(b->renderer, error);
     if (!b->baker) return error->status;
-    prom_keys_of_device(b);
+    b->device_key = prom_key_of_device(b->context, b->program_key);
     return PROM_OK;
 }
 
@@ -380,7 +381,8 @@ prom_status prom_build(const char *scene_path, const char *out_path,
     if (!b.writer) status = error->status;
     if (!status) status = run_stages(&b, scene_path, error);
     if (status && prom_stop_requested()) status = stopped(&b, error);
-    if (!status) status = prom_store_prune(b.store, error);
+    prom_unit_kind end = all.view_cells_follow ? PROM_UNIT_VIEW_CELL : PROM_UNIT_COUNT;
+    if (!status) status = prom_store_prune(b.store, PROM_UNIT_LEVELS, end, error);
     prom_store_close(b.store);
     if (!status) status = prom_writer_finish(b.writer, error);
     if (!status && all.drop_work) drop_work(out_path);

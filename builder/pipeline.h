@@ -13,6 +13,7 @@ typedef enum prom_build_from {
     PROM_BUILD_FROM_START,
     PROM_BUILD_FROM_LEAVES,
     PROM_BUILD_FROM_CLUSTERS,
+    PROM_BUILD_FROM_VIEW_CELLS, // see builder/view_cells.h
 } prom_build_from;
 
 typedef struct prom_build_options {
@@ -21,12 +22,14 @@ typedef struct prom_build_options {
     prom_tree_options tree;
     uint32_t texture_mb; // bytes of impostor pictures on the device, in MiB; 0: 256
     const char *profile; // cost profile that the content names; NULL: none
-    // That the work may take, beside what the device's driver does; 0: any. It changes nothing in
-    // the model, and so is no limit on import, which has its own.
+    // That the work may take, beside what the device's driver does; 0: any. It changes nothing
+    // in the model, and so is no limit on import, which has its own.
     uint32_t memory_mb;
     // What earlier builds left in X.prom.work:
-    prom_build_from from; // stages from this one on are done anew
-    bool drop_work;       // it is deleted when the build has succeeded
+    prom_build_from from;   // stages from this one on are done anew
+    bool drop_work;         // it is deleted when the build has succeeded
+    bool view_cells_follow; // prom_view_cells_build will be called for the model: what earlier
+                            // calls of it left is kept
 } prom_build_options;
 
 typedef struct prom_build_report {

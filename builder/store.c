@@ -197,10 +197,14 @@ prom_status prom_store_delete(const char *model_path, prom_error *error)
     return status;
 }
 
-prom_status prom_store_prune(prom_store *store, prom_error *error)
+prom_status prom_store_prune(prom_store *store, prom_unit_kind first, prom_unit_kind end,
+                             prom_error *error)
 {
-    const char *sql = "DELETE FROM unit WHERE NOT EXISTS (SELECT 1 FROM used"
-                      " WHERE used.kind=unit.kind AND used.key=unit.key)";
+    char sql[256];
+    snprintf(sql, sizeof sql,
+             "DELETE FROM unit WHERE kind>=%d AND kind<%d AND NOT EXISTS"
+             " (SELECT 1 FROM used WHERE used.kind=unit.kind AND used.key=unit.key)",
+             (int)first, (int)end);
     bool good = sqlite3_exec(store->db, sql, NULL, NULL, NULL) == SQLITE_OK;
     if (!good && is_lost(store->db)) good = start_over(store);
     return good ? PROM_OK : fail(store, error);

@@ -16,10 +16,11 @@ typedef struct prom_store prom_store;
 
 // The kinds of units, in the order of the build.
 typedef enum prom_unit_kind {
-    PROM_UNIT_LEVELS,  // meshes of a shape
-    PROM_UNIT_LEAF,    // representations of a shape's prototype
-    PROM_UNIT_MERGE,   // merged meshes of a cluster
-    PROM_UNIT_CLUSTER, // representations of a cluster's prototype
+    PROM_UNIT_LEVELS,    // meshes of a shape
+    PROM_UNIT_LEAF,      // representations of a shape's prototype
+    PROM_UNIT_MERGE,     // merged meshes of a cluster
+    PROM_UNIT_CLUSTER,   // representations of a cluster's prototype
+    PROM_UNIT_VIEW_CELL, // what shows from a cell of eyes
     PROM_UNIT_COUNT
 } prom_unit_kind;
 
@@ -30,8 +31,10 @@ typedef enum prom_unit_kind {
 prom_store *prom_store_open(const char *model_path, prom_unit_kind redo, prom_error *error);
 // Keeps the file. NULL is allowed.
 void prom_store_close(prom_store *store);
-// Drops the units that this build has neither taken nor put.
-prom_status prom_store_prune(prom_store *store, prom_error *error);
+// Drops the units of kinds [first, end) that have neither been taken nor put since it was
+// opened.
+prom_status prom_store_prune(prom_store *store, prom_unit_kind first, prom_unit_kind end,
+                             prom_error *error);
 // The file of the model's store; free it.
 char *prom_store_path(const char *model_path);
 // Deletes the model's store, if there is one.

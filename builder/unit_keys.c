@@ -42,18 +42,18 @@ static int add_library(struct dl_phdr_info *library, size_t size, void *user)
 }
 
 // Another program may compute otherwise, and so may this one with other libraries.
-void prom_keys_of_program(prom_build_state *b)
+uint64_t prom_key_of_program(void)
 {
-    b->program_key = hash_of_program();
-    dl_iterate_phdr(add_library, &b->program_key);
+    uint64_t h = hash_of_program();
+    dl_iterate_phdr(add_library, &h);
+    return h;
 }
 
-void prom_keys_of_device(prom_build_state *b)
+uint64_t prom_key_of_device(const prom_context *context, uint64_t program_key)
 {
-    const char *device = prom_context_renderer(b->context);
-    const char *driver = prom_context_version(b->context);
-    b->device_key = prom_hash(device, strlen(device), b->program_key);
-    b->device_key = prom_hash(driver, strlen(driver), b->device_key);
+    const char *device = prom_context_renderer(context);
+    const char *driver = prom_context_version(context);
+    return prom_hash(driver, strlen(driver), prom_hash(device, strlen(device), program_key));
 }
 
 // The renderer draws in the order of the sizes in which pictures come first; where faces of

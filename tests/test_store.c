@@ -92,7 +92,7 @@ static void pruning_keeps_what_was_used(void **state)
     store = open_store(PROM_UNIT_COUNT);
     assert_true(has(store, PROM_UNIT_LEAF, 3, "old"));
     put(store, PROM_UNIT_LEAF, 100, "new");
-    assert_int_equal(prom_store_prune(store, &error), PROM_OK);
+    assert_int_equal(prom_store_prune(store, PROM_UNIT_LEVELS, PROM_UNIT_COUNT, &error), PROM_OK);
     prom_store_close(store);
     store = open_store(PROM_UNIT_COUNT);
     for (uint64_t k = 0; k < 50; k++)
@@ -129,7 +129,7 @@ static void damage_costs_units_and_nothing_else(void **state)
             lost += !has(store, PROM_UNIT_LEAF, k, "a unit of work, in bytes");
         for (uint64_t k = 0; k < 16; k++) put(store, PROM_UNIT_LEAF, k, "made again");
         assert_true(has(store, PROM_UNIT_LEAF, 15, "made again"));
-        assert_int_equal(prom_store_prune(store, &error), PROM_OK);
+        assert_int_equal(prom_store_prune(store, PROM_UNIT_LEVELS, PROM_UNIT_COUNT, &error), PROM_OK);
         prom_store_close(store);
     }
     assert_true(lost > 0);
