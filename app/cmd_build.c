@@ -1,9 +1,8 @@
 // promenade build: from a scene file to a model.
+#include "app/build_options.h"
 #include "app/command.h"
-#include "app/options.h"
 #include "app/output.h"
 
-#include "builder/pipeline.h"
 #include "metaobj/base/clock.h"
 #include "metaobj/base/log.h"
 #include "metaobj/base/stop.h"
@@ -17,268 +16,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-typedef struct build_options {
-    prom_build_options build;
-    const char *scene, *output;
-    unsigned jobs; // 0: all cores
-} build_options;
-
-enum {
-    KEY_TEXTURE_MB = 0x1000,
-    KEY_OCTREE,
-    KEY_DIVISIONS,
-    KEY_GROUP_RADIUS,
-    KEY_MAX_CHILDREN,
-    KEY_MAX_OBJECT,
-    KEY_MIN_OBJECT,
-    KEY_CHUNK_SIZE,
-    KEY_MAX_TEXTURE,
-    KEY_IMPORT_MEMORY,
-    KEY_IMPORT_TIME,
-    KEY_UP_AXIS,
-    KEY_UNIT,
-    KEY_PROFILE,
-    KEY_MEMORY,
-    KEY_FORCE,
-    KEY_FROM,
-    KEY_DROP_WORK,
-};
-
-static const struct argp_option options[] = {
-    {"output", 'o', "FILE", 0, "The model to write (X.prom)", 0},
-    {0, 0, 0, 0, "Import:", 1},
-    {"max-texture-px", KEY_MAX_TEXTURE, "PX", 0, "Reduce pictures to this side (1024)", 1},
-    {"import-memory-mb", KEY_IMPORT_MEMORY, "MB", 0,
-     "Memory that reading the scene may take (8192)", 1},
-    {"import-time-s", KEY_IMPORT_TIME, "S", 0,
-     "Processor time that reading the scene may take (300)", 1},
-    {"up-axis", KEY_UP_AXIS, "y|z", 0, "The scene's upward axis (what the file says)", 1},
-    {"unit-m", KEY_UNIT, "M", 0, "Metres of a unit of the scene (what the file says, or 1)", 1},
-    {0, 0, 0, 0, "Objects:", 2},
-    {"max-object-triangles", KEY_MAX_OBJECT, "N", 0, "Split larger objects (4096)", 2},
-    {"min-object-triangles", KEY_MIN_OBJECT, "N", 0, "Gather smaller neighbours (256)", 2},
-    {"chunk-size", KEY_CHUNK_SIZE, "UNITS", 0,
-     "Edge of the chunks of large surfaces, in scene units (from the layout)", 2},
-    {0, 0, 0, 0, "Tree:", 3},
-    {"octree", KEY_OCTREE, "loose|strict", 0, "Kind of tree (loose)", 3},
-    {"divisions", KEY_DIVISIONS, "NX,NY,NZ", 0, "strict: cells of the finest level (16,1,16)",
-     3},
-    {"group-radius", KEY_GROUP_RADIUS, "UNITS", 0,
-     "strict: take objects within it as one group first (0: none)", 3},
-    {"max-children", KEY_MAX_CHILDREN, "N", 0, "loose: children of a node, at most (16)", 3},
-    {0, 0, 0, 0, "Impostors and cost:", 4},
-    {"texture-mb", KEY_TEXTURE_MB, "MB", 0, "Memory for impostor pictures (256)", 4},
-    {"profile", KEY_PROFILE, "FILE", 0, "Cost profile that the model is built for", 4},
-    {0, 0, 0, 0, "Work:", 5},
-    {"jobs", 'j', "N", 0, "Cores to use (all)", 5},
-    {"memory-mb", KEY_MEMORY, "MB", 0,
-     "Memory to stay within: fewer things are under way at a time (any)", 5},
-    {"from", KEY_FROM, "STAGE", 0,
-     "Take nothing from earlier builds from this stage on: levels, leaves or clusters", 5},
-    {"force", KEY_FORCE, NULL, 0, "Take nothing from earlier builds", 5},
-    {"drop-work", KEY_DROP_WORK, NULL, 0,
-     "Delete X.prom.work, which serves later builds, at the end", 5},
-    {0},
-};
-
-static error_t parse_import(build_options *o, int key, char *text, struct argp_state *state)
-{
-    prom_import_options *import = &o->build.import;
-    switch (key) {
-    case KEY_MAX_TEXTURE:
-        import->max_texture_px =
-            (uint32_t)prom_option_whole(state, "--max-texture-px", text, 1, PROM_TEXTURE_MAX);
-        break;
-    case KEY_IMPORT_MEMORY:
-        import->memory_bytes = prom_option_whole(state, "--import-memory-mb", text, 16, 1 << 24)
-                               << 20;
-        break;
-    case KEY_IMPORT_TIME:
-        import->time_s =
-            (uint32_t)prom_option_whole(state, "--import-time-s", text, 1, 1000000);
-        break;
-    case KEY_UP_AXIS:
-        if (strcmp(text, "y") && strcmp(text, "z"))
-            argp_error(state, "--up-axis: `%s` is neither y nor z", text);
-        import->up = *text == 'y' ? PROM_UP_Y : PROM_UP_Z;
-        break;
-    case KEY_UNIT:
-        import->unit_m = prom_option_number(state, "--unit-m", text, 1e-9, 1e9);
-        break;
-    default:
-        return ARGP_ERR_UNKNOWN;
-    }
-    return 0;
-}
-
-static void parse_from(prom_build_options *build, const char *text,
-                       const struct argp_state *state)
-{
-    static const struct {
-        const char *stage;
-        prom_build_from from;
-    } stages[] = {{"import", PROM_BUILD_FROM_START},     {"objects", PROM_BUILD_FROM_START},
-                  {"tree", PROM_BUILD_FROM_START},       {"textures", PROM_BUILD_FROM_START},
-                  {"levels", PROM_BUILD_FROM_START},     {"leaves", PROM_BUILD_FROM_LEAVES},
-                  {"clusters", PROM_BUILD_FROM_CLUSTERS}};
-    for (size_t i = 0; i < sizeof stages / sizeof *stages; i++)
-        if (!strcmp(text, stages[i].stage)) {
-            build->from = stages[i].from;
-            return;
-        }
-    argp_error(state, "--from: `%s` is no stage; give levels, leaves or clusters", text);
-}
-
-static error_t parse_work(build_options *o, int key, char *text, struct argp_state *state)
-{
-    switch (key) {
-    case 'j':
-        o->jobs = (unsigned)prom_option_whole(state, "--jobs", text, 1, 64);
-        break;
-    case KEY_MEMORY:
-        o->build.memory_mb =
-            (uint32_t)prom_option_whole(state, "--memory-mb", text, 64, 1 << 24);
-        break;
-    case KEY_FORCE:
-        o->build.from = PROM_BUILD_FROM_START;
-        break;
-    case KEY_FROM:
-        parse_from(&o->build, text, state);
-        break;
-    case KEY_DROP_WORK:
-        o->build.drop_work = true;
-        break;
-    default:
-        return parse_import(o, key, text, state);
-    }
-    return 0;
-}
-
-static error_t parse_objects(build_options *o, int key, char *text, struct argp_state *state)
-{
-    prom_object_options *objects = &o->build.objects;
-    switch (key) {
-    case KEY_MAX_OBJECT:
-        objects->max_triangles =
-            (uint32_t)prom_option_whole(state, "--max-object-triangles", text, 16, 100000000);
-        break;
-    case KEY_MIN_OBJECT:
-        objects->min_triangles =
-            (uint32_t)prom_option_whole(state, "--min-object-triangles", text, 1, 100000000);
-        break;
-    case KEY_CHUNK_SIZE:
-        objects->chunk_size = prom_option_number(state, "--chunk-size", text, 1e-6, 1e9);
-        break;
-    default:
-        return parse_work(o, key, text, state);
-    }
-    return 0;
-}
-
-static void parse_divisions(prom_tree_options *tree, const char *text,
-                            const struct argp_state *state)
-{
-    double n[3] = {1, 1, 1};
-    prom_option_numbers(state, "--divisions", text, ',', 1, 1024, 3, n);
-    for (int i = 0; i < 3; i++) {
-        if (n[i] != (uint32_t)n[i])
-            argp_error(state, "--divisions: `%s` is not in whole cells", text);
-        tree->divisions[i] = (uint32_t)n[i];
-    }
-}
-
-static error_t parse_tree(build_options *o, int key, char *text, struct argp_state *state)
-{
-    prom_tree_options *tree = &o->build.tree;
-    switch (key) {
-    case KEY_OCTREE:
-        if (!strcmp(text, "loose"))
-            tree->octree = PROM_OCTREE_LOOSE;
-        else if (!strcmp(text, "strict"))
-            tree->octree = PROM_OCTREE_STRICT;
-        else
-            argp_error(state, "--octree: `%s` is neither loose nor strict", text);
-        break;
-    case KEY_DIVISIONS:
-        parse_divisions(tree, text, state);
-        break;
-    case KEY_GROUP_RADIUS:
-        tree->group_radius = prom_option_number(state, "--group-radius", text, 0, 1e9);
-        break;
-    case KEY_MAX_CHILDREN:
-        tree->max_children =
-            (uint32_t)prom_option_whole(state, "--max-children", text, 2, 1024);
-        break;
-    default:
-        return parse_objects(o, key, text, state);
-    }
-    return 0;
-}
-
-// The strict tree's options mean nothing to the loose one and the other way round.
-static void check_tree(const prom_tree_options *tree, const struct argp_state *state)
-{
-    bool strict = tree->octree == PROM_OCTREE_STRICT;
-    if (!strict && (tree->divisions[0] || tree->group_radius > 0))
-        argp_error(state, "--divisions and --group-radius are for --octree strict");
-    if (strict && tree->max_children) argp_error(state, "--max-children is for --octree loose");
-}
-
-static void check_objects(const prom_object_options *objects, const struct argp_state *state)
-{
-    uint32_t most = objects->max_triangles, least = objects->min_triangles;
-    if (most && least > most)
-        argp_error(state,
-                   "--min-object-triangles %" PRIu32 " is more than --max-object-triangles "
-                   "%" PRIu32,
-                   least, most);
-}
-
-static error_t parse(int key, char *text, struct argp_state *state)
-{
-    build_options *o = state->input;
-    switch (key) {
-    case 'o':
-        o->output = text;
-        break;
-    case KEY_TEXTURE_MB:
-        o->build.texture_mb =
-            (uint32_t)prom_option_whole(state, "--texture-mb", text, 1, 1 << 20);
-        break;
-    case KEY_PROFILE:
-        o->build.profile = text;
-        break;
-    case ARGP_KEY_ARG:
-        prom_option_argument(state, text, &o->scene);
-        break;
-    case ARGP_KEY_END:
-        prom_option_require(state, "the scene's file", o->scene);
-        prom_option_require(state, "--output", o->output);
-        check_tree(&o->build.tree, state);
-        check_objects(&o->build.objects, state);
-        break;
-    default:
-        return parse_tree(o, key, text, state);
-    }
-    return 0;
-}
-
-static const struct argp_child children[] = {{&prom_argp_log, 0, NULL, -1}, {0}};
-
-static const struct argp argp = {
-    .options = options,
-    .parser = parse,
-    .args_doc = "SCENE",
-    .doc =
-        "Build a model from a scene: glTF, GLB, OBJ, PLY, FBX, DAE, 3DS, STL, AC and what else "
-        "assimp reads.\v"
-        "The model appears when the build has succeeded, or not at all. A build that was cut "
-        "off goes on where it stopped when it is started again, and one with other options "
-        "or a changed scene redoes only what depends on them: X.prom.work beside the model "
-        "holds what was done. It may be deleted at any time.",
-    .children = children,
-};
-
 // A profile that cannot be used is to be known now, not after the build.
 static prom_status check_profile(const char *profile, prom_error *error)
 {
@@ -286,7 +23,24 @@ static prom_status check_profile(const char *profile, prom_error *error)
     return profile ? prom_cost_load(profile, &unused, error) : PROM_OK;
 }
 
-static prom_status check_files(build_options *o, prom_error *error)
+// Of the cells that eyes are spread for: those that are made may be larger.
+static double cell_size(const prom_build_command *o)
+{
+    return o->cells.cell_size > 0 ? o->cells.cell_size : PROM_VIEW_CELL_SIZE;
+}
+
+// Camera paths are read now too.
+static prom_status check_where(prom_build_command *o, prom_error *error)
+{
+    prom_status status = PROM_OK;
+    for (size_t i = 0; i < o->where.files.count && !status; i++) {
+        prom_command_files files = {{o->where.files.data[i]}, {&o->output}};
+        status = prom_outputs_check(&files, error);
+    }
+    return status ? status : prom_where_eyes_of_paths(&o->where, cell_size(o), error);
+}
+
+static prom_status check_files(prom_build_command *o, prom_error *error)
 {
     struct stat scene;
     if (stat(o->scene, &scene) != 0)
@@ -295,10 +49,20 @@ static prom_status check_files(build_options *o, prom_error *error)
         return prom_fail(error, PROM_ERR_INPUT, "%s: is not a file", o->scene);
     prom_command_files files = {{o->scene, o->build.profile}, {&o->output}};
     prom_status status = prom_outputs_check(&files, error);
-    return status ? status : check_profile(o->build.profile, error);
+    if (!status) status = check_profile(o->build.profile, error);
+    return status ? status : check_where(o, error);
 }
 
-static void print_report(const build_options *o, const prom_build_report *r, double seconds)
+static void print_view_cells(const prom_view_cells_report *c)
+{
+    printf("view cells       %12" PRIu32 "  (of %.3g m, from %" PRIu64 " eyes in %.1f s, "
+           "%.1f KiB; show %.0f %% of the leaves on average)\n",
+           c->cells, c->cell_size, c->eyes, c->seconds, (double)c->bytes / 1024,
+           100 * c->mean_share);
+}
+
+static void print_report(const prom_build_command *o, const prom_build_report *r,
+                         const prom_view_cells_report *cells, double seconds)
 {
     double triangles = (double)(r->source_triangles ? r->source_triangles : 1);
     printf("%s: built in %.1f s\n", o->output, seconds);
@@ -308,6 +72,7 @@ static void print_report(const build_options *o, const prom_build_report *r, dou
     printf("nodes            %12" PRIu32 "  (most children: %" PRIu32 ")\n", r->nodes,
            r->max_children);
     printf("representations  %12" PRIu32 "\n", r->representations);
+    if (o->where.kind) print_view_cells(cells);
     printf("file             %12.1f MiB (%.0f bytes a triangle)\n",
            (double)r->file_bytes / (1 << 20), (double)r->file_bytes / triangles);
     if (r->work_bytes)
@@ -354,21 +119,50 @@ static prom_status end_stopped(const prom_error *error)
     return error->status;
 }
 
+// The model is in place then; whatever happens now, it stays.
+static prom_status build_view_cells(prom_build_command *o, prom_build_report *report,
+                                    prom_view_cells_report *cells, prom_error *error)
+{
+    prom_eyes *eyes = &o->where.eyes;
+    o->cells.anew = o->build.from != PROM_BUILD_FROM_NOWHERE;
+    prom_status status = prom_where_eyes_of_model(&o->where, o->output, cell_size(o), error);
+    if (!status)
+        status = prom_view_cells_build(o->output, (const double(*)[3])eyes->data, eyes->count,
+                                       &o->cells, cells, error);
+    report->file_bytes = cells->file_bytes;
+    report->work_bytes = cells->work_bytes;
+    return status;
+}
+
+static prom_status build(prom_build_command *o, prom_error *error)
+{
+    double start = prom_clock_ms();
+    prom_build_report report = {0};
+    prom_view_cells_report cells = {0};
+    if (o->where.kind) { // the last step drops the work
+        o->build.view_cells_follow = true;
+        o->cells.drop_work = o->build.drop_work;
+        o->build.drop_work = false;
+    }
+    prom_status status = prom_build(o->scene, o->output, &o->build, &report, error);
+    if (!status && o->where.kind) status = build_view_cells(o, &report, &cells, error);
+    if (status) return status;
+    print_report(o, &report, &cells, (prom_clock_ms() - start) / 1000.0);
+    return PROM_OK;
+}
+
 prom_status prom_command_build(int argc, char **argv, prom_error *error)
 {
-    build_options o = {0};
-    argp_parse(&argp, argc, argv, 0, NULL, &o);
+    prom_build_command o = {0};
+    argp_parse(&prom_argp_build, argc, argv, 0, NULL, &o);
     if (o.build.tree.octree == PROM_OCTREE_STRICT && !o.build.tree.divisions[0])
         memcpy(o.build.tree.divisions, (uint32_t[]){16, 1, 16}, sizeof o.build.tree.divisions);
     prom_status status = check_files(&o, error);
-    if (status) return status;
-    if (o.jobs) use_jobs(o.jobs);
-    stop_on_signals();
-    double start = prom_clock_ms();
-    prom_build_report report = {0};
-    status = prom_build(o.scene, o.output, &o.build, &report, error);
-    if (status == PROM_ERR_STOPPED) return end_stopped(error);
-    if (status) return status;
-    print_report(&o, &report, (prom_clock_ms() - start) / 1000.0);
-    return PROM_OK;
+    if (!status) {
+        if (o.jobs) use_jobs(o.jobs);
+        stop_on_signals();
+        status = build(&o, error);
+    }
+    prom_where_finish(&o.where);
+    return status == PROM_ERR_STOPPED ? end_stopped(error) : status;
 }
