@@ -21,8 +21,10 @@ typedef struct prom_sight {
     prom_visibility *visibility; // NULL: nothing is known, nor asked for
     prom_id_counter *counter;    // NULL: frames are not counted
     prom_sighting sightings[PROM_ID_RING];
-    float *px; // per node; 0 between the frames
-    uint64_t frames;
+    float *px;          // per node; 0 between the frames
+    uint64_t counted;   // frames, so far
+    uint32_t uncounted; // frames since the last of them
+    float way;          // of the camera at that
 } prom_sight;
 
 // As the session's visibility mode says. On failure there is nothing to finish.

@@ -208,6 +208,11 @@ float prom_visibility_share(const prom_visibility *visibility, uint32_t node)
     return prior + (n->share - prior) * exp2f(-beyond * beyond);
 }
 
+float prom_visibility_way(const prom_visibility *visibility)
+{
+    return visibility->moved + visibility->turned;
+}
+
 // Of a node most of whose footprint has been counted.
 static void settle(prom_visibility *v, uint32_t node)
 {
