@@ -92,12 +92,31 @@ static void pruning_keeps_what_was_used(void **state)
     store = open_store(PROM_UNIT_COUNT);
     assert_true(has(store, PROM_UNIT_LEAF, 3, "old"));
     put(store, PROM_UNIT_LEAF, 100, "new");
-    assert_int_equal(prom_store_prune(store, PROM_UNIT_LEVELS, PROM_UNIT_COUNT, &error), PROM_OK);
+    assert_int_equal(prom_store_prune(store, PROM_UNIT_LEVELS, PROM_UNIT_COUNT, &error),
+                     PROM_OK);
     prom_store_close(store);
     store = open_store(PROM_UNIT_COUNT);
     for (uint64_t k = 0; k < 50; k++)
         assert_int_equal(has(store, PROM_UNIT_LEAF, k, "old"), k == 3);
     assert_true(has(store, PROM_UNIT_LEAF, 100, "new"));
+    prom_store_close(store);
+}
+
+static void pruning_spares_other_kinds(void **state)
+{
+    (void)state;
+    prom_error error = {0};
+    prom_store *store = open_store(PROM_UNIT_COUNT);
+    put(store, PROM_UNIT_LEAF, 1, "leaf");
+    put(store, PROM_UNIT_VIEW_CELL, 1, "cell");
+    prom_store_close(store);
+    store = open_store(PROM_UNIT_COUNT);
+    assert_int_equal(prom_store_prune(store, PROM_UNIT_LEVELS, PROM_UNIT_VIEW_CELL, &error),
+                     PROM_OK);
+    prom_store_close(store);
+    store = open_store(PROM_UNIT_COUNT);
+    assert_false(has(store, PROM_UNIT_LEAF, 1, ""));
+    assert_true(has(store, PROM_UNIT_VIEW_CELL, 1, "cell"));
     prom_store_close(store);
 }
 
@@ -129,7 +148,8 @@ static void damage_costs_units_and_nothing_else(void **state)
             lost += !has(store, PROM_UNIT_LEAF, k, "a unit of work, in bytes");
         for (uint64_t k = 0; k < 16; k++) put(store, PROM_UNIT_LEAF, k, "made again");
         assert_true(has(store, PROM_UNIT_LEAF, 15, "made again"));
-        assert_int_equal(prom_store_prune(store, PROM_UNIT_LEVELS, PROM_UNIT_COUNT, &error), PROM_OK);
+        assert_int_equal(prom_store_prune(store, PROM_UNIT_LEVELS, PROM_UNIT_COUNT, &error),
+                         PROM_OK);
         prom_store_close(store);
     }
     assert_true(lost > 0);
@@ -216,6 +236,7 @@ int main(void)
         cmocka_unit_test_setup(units_come_back_in_a_later_run, fresh),
         cmocka_unit_test_setup(later_kinds_are_redone, fresh),
         cmocka_unit_test_setup(pruning_keeps_what_was_used, fresh),
+        cmocka_unit_test_setup(pruning_spares_other_kinds, fresh),
         cmocka_unit_test_setup(damage_costs_units_and_nothing_else, fresh),
         cmocka_unit_test_setup(a_full_disk_is_an_error_that_says_so, fresh),
         cmocka_unit_test_setup(another_file_of_that_name_is_not_touched, fresh),
