@@ -30,16 +30,27 @@ static double distance2(const double a[3], const double b[3])
     return sum;
 }
 
-// The lowest eyes are in the middle of their cubes: people do not walk along a border.
-static bool set_grid(const double (*eyes)[3], size_t count, double size, prom_view_cells *grid)
+static int compare_numbers(const void *a, const void *b)
 {
-    *grid = (prom_view_cells){.origin = {DBL_MAX, DBL_MAX, DBL_MAX}, .size = size};
-    for (size_t i = 0; i < count; i++)
-        for (int k = 0; k < 3; k++) {
-            if (!(fabs(eyes[i][k]) < 1e15)) return false;
-            grid->origin[k] = fmin(grid->origin[k], eyes[i][k] - 0.5 * size);
+    const double *x = a, *y = b;
+    return (*x > *y) - (*x < *y);
+}
+
+// The median eye is in the middle of its cube: of eyes at one height none is near a border.
+static bool set_grid(const double (*eyes)[3], uint32_t count, prom_view_cells *grid)
+{
+    double *along = prom_alloc(count, sizeof *along);
+    bool good = true;
+    for (int k = 0; k < 3 && good; k++) {
+        for (uint32_t i = 0; i < count && good; i++) {
+            along[i] = eyes[i][k];
+            good = isfinite(along[i]);
         }
-    return true;
+        if (good) qsort(along, count, sizeof *along, compare_numbers);
+        grid->origin[k] = along[count / 2] - 0.5 * grid->size;
+    }
+    prom_free(along);
+    return good;
 }
 
 // Puts the eyes into their cubes and gives the number of these; 0: some have none.
@@ -47,10 +58,13 @@ static uint32_t place(const double (*eyes)[3], uint32_t count, double size, plac
                       prom_view_cells *grid)
 {
     uint32_t cubes = 0;
-    if (!set_grid(eyes, count, size, grid)) return 0;
+    *grid = (prom_view_cells){.size = size};
+    if (!set_grid(eyes, count, grid)) return 0;
     for (uint32_t i = 0; i < count; i++) {
         placed[i].eye = i;
         if (!prom_view_cells_cube(grid, eyes[i], placed[i].at)) return 0;
+        for (int k = 0; k < 3; k++) // each has neighbours
+            if (placed[i].at[k] == INT32_MIN || placed[i].at[k] == INT32_MAX) return 0;
     }
     qsort(placed, count, sizeof *placed, compare_placed);
     for (uint32_t i = 0; i < count; i++)
