@@ -165,7 +165,7 @@ static uint64_t hash_reps(const prom_build_state *b, uint64_t h)
     h = prom_hash(b->reps.data, b->reps.count * sizeof *b->reps.data, h);
     return prom_hash(b->accuracy.data, b->accuracy.count * sizeof *b->accuracy.data, h);
 }
-_Static_assert(sizeof(prom_representation) == 13 * 4, "hash_reps hashes no padding");
+_Static_assert(sizeof(prom_representation) == 14 * 4, "hash_reps hashes no padding");
 
 static uint64_t hash_clusters(const prom_build_state *b, uint64_t h)
 {

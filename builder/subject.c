@@ -11,6 +11,8 @@
 #define GAPS_SHOWN_PX 64.0f
 // One whose gaps allow less than this is of no use.
 #define LEAST_SIZE_PX 16.0f
+// More than this is a speck that is hardly seen.
+#define MOST_LAYERS 64.0
 
 // ---- drawing
 
@@ -129,6 +131,36 @@ static float fit_near(const prom_comparison *result, float error, float radius)
     return prom_accuracy_fit_near(e_px, mean, PROM_SIZES);
 }
 
+// Area that the triangles of a mesh fill, seen from afar: mean over all directions. A triangle
+// shows a quarter of its area on each side (Cauchy 1832).
+static double mean_filled_area(const prom_build_state *b, const prom_mesh *mesh)
+{
+    double area = 0.0;
+    for (uint32_t s = 0; s < mesh->submesh_count; s++) {
+        const prom_submesh *submesh = &mesh->submeshes[s];
+        bool both = submesh->material != PROM_NONE &&
+                    b->source.materials.data[submesh->material].double_sided;
+        const uint32_t *corners = mesh->indices + submesh->first_index;
+        for (uint32_t i = 0; i + 2 < submesh->index_count; i += 3) {
+            vec3 u, v, normal;
+            const float *p = mesh->vertices[corners[i]].position;
+            glm_vec3_sub((float *)mesh->vertices[corners[i + 1]].position, (float *)p, u);
+            glm_vec3_sub((float *)mesh->vertices[corners[i + 2]].position, (float *)p, v);
+            glm_vec3_cross(u, v, normal);
+            area += (both ? 0.25 : 0.125) * (double)glm_vec3_norm(normal);
+        }
+    }
+    return area;
+}
+
+static float layers_of(const prom_subject *s, const prom_mesh *mesh)
+{
+    double covered = 0.0, disc = GLM_PI * (double)radius_of(s) * (double)radius_of(s);
+    for (uint32_t d = 0; d < PROM_DIRS; d++) covered += s->coverage[d] / (65535.0 * PROM_DIRS);
+    double layers = covered > 0.0 ? mean_filled_area(s->build, mesh) / (covered * disc) : 1.0;
+    return (float)fmin(fmax(layers, 1.0), MOST_LAYERS);
+}
+
 static void settle(prom_subject *s, prom_candidate *c)
 {
     prom_representation *rep = &c->rep;
@@ -138,6 +170,7 @@ static void settle(prom_subject *s, prom_candidate *c)
     rep->draws = c->mesh->submesh_count;
     rep->vertices = c->mesh->vertex_count;
     rep->triangles = c->mesh->index_count / 3;
+    rep->layers = mesh ? layers_of(s, c->mesh) : 1.0f;
     c->kept = true;
     if (c->admission != PROM_ADMIT_MEASURED) {
         memset(c->result.accuracy, 255, sizeof c->result.accuracy);

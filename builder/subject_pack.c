@@ -2,7 +2,7 @@
 // come from a unit of their own.
 #include "builder/subject.h"
 
-_Static_assert(sizeof(prom_representation) == 13 * 4, "packed without padding");
+_Static_assert(sizeof(prom_representation) == 14 * 4, "packed without padding");
 
 static void pack_candidate(const prom_candidate *c, prom_pack *pack)
 {
@@ -31,7 +31,7 @@ void prom_subject_pack(const prom_subject *s, prom_pack *pack)
 static bool sound(const prom_representation *r)
 {
     return r->kind < PROM_REP_KIND_COUNT && r->shading < PROM_SHADE_COUNT && r->error >= 0 &&
-           r->max_size_px > 0 && r->near_k >= 0 && r->switch_distance > 0;
+           r->max_size_px > 0 && r->near_k >= 0 && r->switch_distance > 0 && r->layers >= 1;
 }
 
 static void unpack_candidate(prom_candidate *c, prom_unpack *in)

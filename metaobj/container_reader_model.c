@@ -110,6 +110,7 @@ static void take_rep(void *user, prom_row_in *row)
     r.draws = prom_take_u32(row);
     r.vertices = prom_take_u32(row);
     r.triangles = prom_take_u32(row);
+    prom_take_floats(row, &r.layers, 1);
     if (row->failed) return;
     give_to_owner(l, row, owner);
     l->kept[row->id] = m->rep_count;

@@ -43,7 +43,7 @@ const prom_table_schema prom_tables[PROM_TABLE_COUNT] = {
          "  shading INTEGER NOT NULL, level INTEGER NOT NULL, error REAL NOT NULL,\n"
          "  max_size_px REAL, near_k REAL NOT NULL, switch_distance REAL,\n"
          "  draws INTEGER NOT NULL, vertices INTEGER NOT NULL,\n"
-         "  triangles INTEGER NOT NULL) STRICT",
+         "  triangles INTEGER NOT NULL, layers REAL NOT NULL) STRICT",
          NULL},
     [PROM_TABLE_ACCURACY] = {"accuracy",
                              "CREATE TABLE accuracy(\n"

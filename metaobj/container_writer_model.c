@@ -69,6 +69,7 @@ static prom_status put_rep(prom_writer *w, const prom_representation *r, uint32_
     prom_put_int(&row, r->draws);
     prom_put_int(&row, r->vertices);
     prom_put_int(&row, r->triangles);
+    prom_put_real(&row, r->layers);
     return prom_row_end(&row, error);
 }
 

@@ -54,7 +54,9 @@ typedef struct prom_representation {
     float near_k;      // accuracy(e_px) = 1 / (1 + near_k * e_px), see benefit/accuracy.h
     float
         switch_distance; // up to which the scene's artist shows it, scene units; INFINITY: any
-    uint32_t draws, vertices, triangles; // cost features
+    uint32_t draws, vertices, triangles; // cost features, with
+    float layers; // pixels that its triangles fill for each that it covers, those behind others
+                  // included: mean over all directions, at least 1
 } prom_representation;
 
 enum {

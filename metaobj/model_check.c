@@ -102,6 +102,8 @@ static const char *check_rep(const prom_model *m, const prom_representation *r)
     if (!(r->switch_distance > 0)) return "a representation's switch_distance is not above 0";
     if (!(r->near_k >= 0) || !isfinite(r->near_k))
         return "a representation's near_k is not at least 0";
+    if (!(r->layers >= 1) || !isfinite(r->layers))
+        return "a representation's layers are not at least 1";
     return NULL;
 }
 

@@ -98,6 +98,7 @@ static inline prom_representation fixture_rep(uint32_t kind, uint32_t mesh, uint
         .draws = 1,
         .vertices = 24,
         .triangles = 12,
+        .layers = 1.5f,
     };
 }
 

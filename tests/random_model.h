@@ -79,6 +79,7 @@ static inline void random_add_rep(prom_model *m, uint64_t *seed, prom_rep_kind k
         .draws = 1 + random_below(seed, 2),
         .vertices = triangles,
         .triangles = triangles,
+        .layers = 1.0f + (float)(triangles % 4),
     };
     m->meshes[r] = (prom_mesh_info){triangles, 3 * triangles, 1};
     for (uint32_t d = 0; d < PROM_DIRS; d++)

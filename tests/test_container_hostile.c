@@ -177,6 +177,7 @@ static void hostile_rows(void **state)
         {"UPDATE representation SET near_k=-1 WHERE id=0", PROM_TABLE_REPRESENTATION},
         {"UPDATE representation SET error=1e19 WHERE id=1", PROM_TABLE_REPRESENTATION},
         {"UPDATE representation SET switch_distance=0 WHERE id=0", PROM_TABLE_REPRESENTATION},
+        {"UPDATE representation SET layers=0 WHERE id=0", PROM_TABLE_REPRESENTATION},
         {"DELETE FROM accuracy WHERE id=5", PROM_TABLE_ACCURACY},
         {"UPDATE mesh SET index_count=index_count+1 WHERE id=0", PROM_TABLE_MESH},
         {"UPDATE mesh SET vertex_count=vertex_count-1 WHERE id=0", PROM_TABLE_MESH},

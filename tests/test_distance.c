@@ -24,6 +24,7 @@ static void object_reps(prom_model *m, uint64_t *seed)
     for (uint32_t r = 0; r < REPS; r++)
         random_add_rep(m, seed, r == BOX ? PROM_REP_AVERAGE_BOX : PROM_REP_MESH, r,
                        0.1f * (float)r, triangles[r], 1.0f - 0.1f * (float)r);
+    for (uint32_t r = 0; r < REPS; r++) m->reps[r].layers = 1.0f; // triangles alone decide
     set_artist_level(m, ITSELF);
     set_artist_level(m, ARTIST_1);
     set_artist_level(m, ARTIST_2);
@@ -182,6 +183,7 @@ static void artists_levels_are_levels_for_the_others(void **state)
         bench b;
         object_init(&b, 1);
         // Each pays, and at the same rate.
+        b.cost.edge_ms = 0.0;
         for (uint32_t r = 0; r < REPS; r++) {
             memset(b.model.accuracy[r], (int)(55 + b.model.reps[r].triangles / 5), 180);
             b.model.reps[r].shading = PROM_SHADE_PLAIN;

@@ -88,7 +88,8 @@ static inline void make_model(prom_model *m, const prom_mesh meshes[3])
                                            .mesh = i,
                                            .texture = PROM_NONE,
                                            .max_size_px = INFINITY,
-                                           .draws = 1};
+                                           .draws = 1,
+                                           .layers = 1};
     }
     m->prototypes[3] =
         (prom_prototype){.first_rep = 3, .flags = PROM_PROTO_CLUSTER, .child_count = LEAVES};

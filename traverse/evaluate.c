@@ -247,22 +247,34 @@ static double background_cost(const prom_eval *eval, double sum, double screen)
     return seen ? ms + pixel_ms / seen : ms;
 }
 
+// Pixels that are shaded for each that shows, where `layers` lie behind each other in any
+// order. Of opaque ones, those are shaded that are nearer than all before: of n, 1 + 1/2 + ...
+// + 1/n. Where a texture decides what is there, all may be.
+static double shaded_layers(const prom_representation *rep)
+{
+    bool opaque = rep->shading == PROM_SHADE_PLAIN || rep->shading == PROM_SHADE_TEXTURED;
+    double layers = (double)rep->layers;
+    return opaque ? fmin(1.0 + log(layers), layers) : layers;
+}
+
 static void set_costs(prom_eval *eval, uint32_t node, double share)
 {
     const prom_selection *s = eval->selection;
     const prom_eval_node *n = &eval->nodes[node];
-    double shown = share * n->px, hidden = fmax(n->footprint_px - shown, 0.0), box = -1.0;
+    double shown = share * n->px, footprint = fmax(n->footprint_px, shown), box = -1.0;
     for (uint32_t i = 0; i < n->option_count; i++) {
         prom_option *o = &eval->options[n->first_option + i];
         const prom_representation *rep = &eval->model->reps[o->rep];
-        double more = 1.0; // than the node covers by itself
-        if (rep->kind != PROM_REP_MESH && n->footprint_px > 0.0f) {
+        double filled = (double)rep->layers, shaded = shaded_layers(rep);
+        if (rep->kind != PROM_REP_MESH && footprint > 0.0) { // a box is filled all over
             if (box < 0.0)
-                box = prom_box_px(s->view, eval->model, node, n->dir, n->footprint_px) /
-                      n->footprint_px;
-            more = box;
+                box = prom_box_px(s->view, eval->model, node, n->dir, (float)footprint) /
+                      footprint;
+            filled *= box;
+            shaded *= box;
         }
-        o->cost = prom_cost_of_rep(s->cost, rep, more * shown, more * hidden);
+        o->cost =
+            prom_cost_of_rep(s->cost, rep, shaded * shown, filled * footprint - shaded * shown);
     }
 }
 
