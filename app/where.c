@@ -4,8 +4,8 @@
 
 #include <string.h>
 
-// By taste: several eyes in each cell, to choose from.
-#define PATH_SPACING 0.25 // of a cell
+// In cells, by taste: enough to choose from, and so close that a path is in few cells unseen.
+#define PATH_SPACING 0.1
 #define BOX_SPACING 0.5
 // Five minutes: around any layout.
 #define AUTO_FRAMES 9000

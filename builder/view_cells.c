@@ -266,8 +266,21 @@ static uint32_t count_leaves(const prom_model *model)
     return count;
 }
 
-static void fill_report(const work *w, const prom_view_cells *cells, uint64_t bytes_before,
-                        double start_ms, prom_view_cells_report *report)
+// Of the cells, read back from the finished model.
+static prom_status stored_bytes(const work *w, uint64_t *bytes, prom_error *error)
+{
+    prom_view_cells cells = {0};
+    prom_container *container = prom_container_open(w->model_path, error);
+    if (!container) return error->status;
+    prom_status status = prom_container_read_view_cells(container, &w->model, &cells, error);
+    if (!status) *bytes = prom_container_view_cell_bytes(container);
+    prom_view_cells_finish(&cells);
+    prom_container_close(container);
+    return status;
+}
+
+static void fill_report(const work *w, const prom_view_cells *cells, double start_ms,
+                        prom_view_cells_report *report)
 {
     char *store = prom_store_path(w->model_path);
     *report = (prom_view_cells_report){
@@ -281,7 +294,6 @@ static void fill_report(const work *w, const prom_view_cells *cells, uint64_t by
         .file_bytes = bytes_of(w->model_path),
         .work_bytes = bytes_of(store),
     };
-    if (report->file_bytes > bytes_before) report->bytes = report->file_bytes - bytes_before;
     prom_free(store);
 }
 
@@ -289,7 +301,6 @@ static prom_status build(work *w, size_t count, prom_view_cells_report *report,
                          prom_error *error)
 {
     double start = prom_clock_ms();
-    uint64_t before = bytes_of(w->model_path);
     prom_view_cells cells = {0};
     prom_status status =
         prom_eye_cells_gather(w->eyes, count, w->options->cell_size, &w->cells, error);
@@ -304,7 +315,10 @@ static prom_status build(work *w, size_t count, prom_view_cells_report *report,
     prom_error kept = {0}; // the model is in place all the same
     if (!status && w->options->drop_work && prom_store_delete(w->model_path, &kept))
         prom_log(PROM_LOG_WARNING, "%s", kept.text);
-    if (!status && report) fill_report(w, &cells, before, start, report);
+    if (!status && report) {
+        fill_report(w, &cells, start, report);
+        status = stored_bytes(w, &report->bytes, error);
+    }
     prom_view_cells_finish(&cells);
     return status;
 }

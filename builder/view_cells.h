@@ -30,8 +30,8 @@ typedef struct prom_view_cells_report {
     uint64_t eyes;               // looked from, those of the taken cells too
     double mean_share;           // of the leaves, that a cell shows
     double seconds;
-    uint64_t bytes, file_bytes; // that the file has grown by, and has now
-    uint64_t work_bytes;        // of the work file
+    uint64_t bytes;                  // of the cells in the file
+    uint64_t file_bytes, work_bytes; // of the model and its work file
 } prom_view_cells_report;
 
 // Puts view cells around `eyes` (count * 3, scene units) into the finished model at

@@ -19,8 +19,8 @@ prom_status prom_eyes_along(const prom_path *path, double spacing, prom_eyes *ey
                             prom_error *error);
 // Adds eyes above the floors with headroom that lie in the box [low, high], over a grid of
 // `spacing` (above 0, scene units) or the map's own cells, whichever is coarser. What is too
-// small to walk on, such as a table, does not count; the ground in a hollow thing that stands on
-// it does, as a room without a door would. The floors are found in the model's geometry in
+// small to walk on, such as a table, does not count; the ground in a hollow thing that stands
+// on it does, as a room without a door would. The floors are found in the model's geometry in
 // `container`, which takes a second or so. PROM_ERR_INPUT when there are none.
 prom_status prom_eyes_in_box(prom_container *container, const prom_model *model,
                              const double low[3], const double high[3], double spacing,
