@@ -67,6 +67,7 @@ static void print_model(const prom_cost_model *m, bool queries)
     for (int i = 0; i < PROM_COST_KINDS; i++)
         printf("pixel        %10.4f ns  %s\n", m->pixel_ms[i] * 1e6, kinds[i]);
     printf("pixel        %10.4f ns  hidden\n", m->hidden_pixel_ms * 1e6);
+    printf("edge         %10.4f ns  hidden\n", m->hidden_edge_ms * 1e6);
     printf("mean error   %10.1f %%\n", 100 * m->mean_error);
     printf("worst under  %10.1f %%\n", 100 * m->worst_under);
     printf("margin       %10.1f %%\n", 100 * m->margin);

@@ -15,8 +15,7 @@ enum {
     PROM_COST_KINDS
 };
 
-// Pixels of an impostor are those that its box covers, whether its pictures show something
-// there or not; of anything else those that show it.
+// Pixels are those that triangles fill, whether their textures show something there or not.
 typedef struct prom_cost_features {
     double fixed; // 1 for a whole frame (clear, resolve, call overhead)
     double draws, vertices, triangles;
@@ -25,6 +24,7 @@ typedef struct prom_cost_features {
     // Length of the triangles' edges in pixels, up to a factor: the sum over draws of
     // prom_cost_edges. Devices shade in blocks of pixels, of which an edge wastes a part.
     double edges;
+    double hidden_edges; // the same of the hidden pixels
 } prom_cost_features;
 
 typedef struct prom_cost_sample {
@@ -34,12 +34,12 @@ typedef struct prom_cost_sample {
 
 typedef PROM_ARRAY(prom_cost_sample) prom_cost_samples;
 
-// Of triangles that are alike, of which shaded_px pixels show and hidden_px lie behind others:
+// Of triangles that are alike and cover `px` pixels and other_px more, the edges in the former:
 // n triangles that fill A pixels have edges of about 5 sqrt(n A) in all.
-static inline double prom_cost_edges(double triangles, double shaded_px, double hidden_px)
+static inline double prom_cost_edges(double triangles, double px, double other_px)
 {
-    double covered = shaded_px + hidden_px;
-    return covered > 0 ? shaded_px * sqrt(triangles / covered) : 0;
+    double covered = px + other_px;
+    return covered > 0 ? px * sqrt(triangles / covered) : 0;
 }
 
 #endif

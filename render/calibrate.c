@@ -80,19 +80,26 @@ static double count_pixels(const calibration *c, prom_target *target)
     return (double)samples;
 }
 
+// Where textures decide what is there, pixels that show nothing are shaded as well: as many for
+// each that shows as the items have without the textures' holes.
 static prom_cost_features count_features(const calibration *c, const scene_plan *plan)
 {
     prom_cost_features f = {.fixed = 1};
-    fill(c, plan, true);
     prom_renderer_take_stats(c->renderer);
-    double shaded = count_pixels(c, c->target);
+    fill(c, plan, false);
+    double shown = count_pixels(c, c->target);
     prom_draw_stats stats = prom_renderer_take_stats(c->renderer);
+    double shown_and_hidden = count_pixels(c, c->flat);
+    fill(c, plan, true);
+    double filled = count_pixels(c, c->flat);
+    double shaded = shown_and_hidden > 0 ? shown * filled / shown_and_hidden : 0.0;
     f.draws = (double)stats.draws;
     f.vertices = (double)stats.vertices;
     f.triangles = (double)stats.triangles;
     f.pixels[plan->kind] = shaded;
-    f.hidden = fmax(count_pixels(c, c->flat) - shaded, 0.0);
+    f.hidden = fmax(filled - shaded, 0.0);
     f.edges = prom_cost_edges(f.triangles, shaded, f.hidden);
+    f.hidden_edges = prom_cost_edges(f.triangles, f.hidden, shaded);
     return f;
 }
 

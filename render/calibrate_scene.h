@@ -13,7 +13,7 @@
 typedef struct scene_plan {
     uint32_t kind;          // prom_shading or PROM_COST_IMPOSTOR_LIT
     uint32_t items, detail; // detail: index of a mesh size; unused for impostors
-    uint32_t layers;        // 1 for impostors, whose pictures do not hide all behind them
+    uint32_t layers;        // 1 for impostors
     float area;             // of a cell that its item covers, about
 } scene_plan;
 
@@ -30,7 +30,7 @@ bool scene_kit_upload(scene_kit *kit, prom_renderer *renderer);
 // however many samples are taken (quasi-random), and the same everywhere.
 scene_plan scene_plan_at(const scene_kit *kit, uint32_t kind, uint32_t index);
 // Fills and prepares the list, front to back. Draw it with the identity as projection. solid:
-// impostors are boxes without pictures.
+// textures cut nothing out and nothing is blended.
 void scene_fill_list(const scene_kit *kit, const scene_plan *plan, float aspect, bool solid,
                      prom_draw_list *list);
 

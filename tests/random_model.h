@@ -260,6 +260,7 @@ static inline prom_cost_model random_cost(uint64_t *seed)
                             .vertex_ms = random_between(seed, 0, 1e-4f),
                             .triangle_ms = random_between(seed, 1e-5f, 2e-4f),
                             .edge_ms = random_between(seed, 0, 2e-5f),
+                            .hidden_edge_ms = random_between(seed, 0, 5e-6f),
                             .hidden_pixel_ms = random_between(seed, 0, 1e-6f)};
     for (int k = 0; k < PROM_COST_KINDS; k++)
         cost.pixel_ms[k] = random_between(seed, 0, 2e-5f);

@@ -28,6 +28,7 @@ static void make_samples(const prom_cost_model *truth, uint64_t *seed, double no
                                   .triangles = triangles};
         f->hidden = random_below(seed, 2) ? random_between(seed, 0, 3e6f) : 0;
         f->edges = random_between(seed, 0, 1) * sqrt(1e6 * triangles);
+        f->hidden_edges = random_between(seed, 0, 1) * sqrt(1e6 * triangles);
         for (int k = 0; k < PROM_COST_KINDS; k++)
             if (random_below(seed, 2)) f->pixels[k] = random_between(seed, 0, 3e6f);
         double factor = 1.0 + noise * (random_unit(seed) + random_unit(seed) - 1.0);
@@ -54,6 +55,7 @@ static void the_fit_recovers_a_known_model(void **state)
         assert_true(near_to(fit.vertex_ms, truth.vertex_ms, 1e-3));
         assert_true(near_to(fit.triangle_ms, truth.triangle_ms, 1e-3));
         assert_true(near_to(fit.edge_ms, truth.edge_ms, 1e-3));
+        assert_true(near_to(fit.hidden_edge_ms, truth.hidden_edge_ms, 1e-3));
         assert_true(near_to(fit.hidden_pixel_ms, truth.hidden_pixel_ms, 1e-3));
         for (int k = 0; k < PROM_COST_KINDS; k++)
             assert_true(near_to(fit.pixel_ms[k], truth.pixel_ms[k], 1e-3));
@@ -84,10 +86,11 @@ static void coefficients_are_never_negative(void **state)
         if (random_below(&seed, 2)) truth.draw_ms = 0.0;
         if (random_below(&seed, 2)) truth.pixel_ms[PROM_SHADE_BLENDED] = 0.0;
         make_samples(&truth, &seed, 0.5, samples);
-        size_t count = 14 + random_below(&seed, SAMPLES - 14);
+        size_t count = 15 + random_below(&seed, SAMPLES - 15);
         assert_int_equal(prom_cost_fit(samples, count, &fit, NULL), PROM_OK);
         assert_true(fit.fixed_ms >= 0 && fit.draw_ms >= 0 && fit.vertex_ms >= 0 &&
-                    fit.triangle_ms >= 0 && fit.edge_ms >= 0 && fit.hidden_pixel_ms >= 0);
+                    fit.triangle_ms >= 0 && fit.edge_ms >= 0 && fit.hidden_pixel_ms >= 0 &&
+                    fit.hidden_edge_ms >= 0);
         for (int k = 0; k < PROM_COST_KINDS; k++) assert_true(fit.pixel_ms[k] >= 0);
         assert_true(isfinite(fit.mean_error) && isfinite(fit.worst_under));
     }
@@ -104,11 +107,12 @@ static void the_fit_is_a_minimum(void **state)
         truth.vertex_ms = 0.0;
         make_samples(&truth, &seed, 0.4, samples);
         assert_int_equal(prom_cost_fit(samples, SAMPLES, &fit, NULL), PROM_OK);
-        enum { FIELDS = 6 + PROM_COST_KINDS };
+        enum { FIELDS = 7 + PROM_COST_KINDS };
         double at[FIELDS], least = -1.0;
-        double *fields[FIELDS] = {&fit.fixed_ms,    &fit.draw_ms, &fit.vertex_ms,
-                                  &fit.triangle_ms, &fit.edge_ms, &fit.hidden_pixel_ms};
-        for (int k = 0; k < PROM_COST_KINDS; k++) fields[6 + k] = &fit.pixel_ms[k];
+        double *fields[FIELDS] = {&fit.fixed_ms,      &fit.draw_ms, &fit.vertex_ms,
+                                  &fit.triangle_ms,   &fit.edge_ms, &fit.hidden_pixel_ms,
+                                  &fit.hidden_edge_ms};
+        for (int k = 0; k < PROM_COST_KINDS; k++) fields[7 + k] = &fit.pixel_ms[k];
         for (int a = 0; a < FIELDS; a++) at[a] = *fields[a];
         for (int try = 0; try < 1 + 4 * FIELDS; try++) {
             for (int a = 0; a < FIELDS; a++) *fields[a] = at[a];
@@ -184,7 +188,8 @@ static void a_representation_costs_its_features(void **state)
                                 .vertices = rep.vertices,
                                 .triangles = rep.triangles,
                                 .hidden = hidden,
-                                .edges = prom_cost_edges(rep.triangles, shaded, hidden)};
+                                .edges = prom_cost_edges(rep.triangles, shaded, hidden),
+                                .hidden_edges = prom_cost_edges(rep.triangles, hidden, shaded)};
         bool lit = rep.shading == PROM_SHADE_IMPOSTOR && !rep.flags;
         f.pixels[lit ? PROM_COST_IMPOSTOR_LIT : rep.shading] = shaded;
         assert_true(near_to(prom_cost_of_rep(&model, &rep, shaded, hidden),

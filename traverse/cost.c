@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { EDGES = 4, HIDDEN, PIXELS, COLUMNS = PIXELS + PROM_COST_KINDS };
+enum { EDGES = 4, HIDDEN, HIDDEN_EDGES, PIXELS, COLUMNS = PIXELS + PROM_COST_KINDS };
 // What a hidden pixel costs against a textured one where no sample has any. Measured on
 // llvmpipe with six full layers: 7.0 ms, where one takes 3.0.
 #define HIDDEN_SHARE 0.27
@@ -23,6 +23,7 @@ static void columns_of(const prom_cost_features *f, double out[COLUMNS])
     out[3] = f->triangles;
     out[EDGES] = f->edges;
     out[HIDDEN] = f->hidden;
+    out[HIDDEN_EDGES] = f->hidden_edges;
     for (int k = 0; k < PROM_COST_KINDS; k++) out[PIXELS + k] = f->pixels[k];
 }
 
@@ -34,6 +35,7 @@ static void set_coefficients(prom_cost_model *model, const double x[COLUMNS])
     model->triangle_ms = x[3];
     model->edge_ms = x[EDGES];
     model->hidden_pixel_ms = x[HIDDEN];
+    model->hidden_edge_ms = x[HIDDEN_EDGES];
     for (int k = 0; k < PROM_COST_KINDS; k++) model->pixel_ms[k] = x[PIXELS + k];
 }
 
@@ -282,7 +284,8 @@ double prom_cost_predict(const prom_cost_model *model, const prom_cost_features 
     double ms = model->fixed_ms * features->fixed + model->draw_ms * features->draws +
                 model->vertex_ms * features->vertices +
                 model->triangle_ms * features->triangles + model->edge_ms * features->edges +
-                model->hidden_pixel_ms * features->hidden;
+                model->hidden_pixel_ms * features->hidden +
+                model->hidden_edge_ms * features->hidden_edges;
     for (int k = 0; k < PROM_COST_KINDS; k++) ms += model->pixel_ms[k] * features->pixels[k];
     return ms;
 }
@@ -301,5 +304,6 @@ double prom_cost_of_rep(const prom_cost_model *model, const prom_representation 
            model->triangle_ms * rep->triangles +
            model->pixel_ms[prom_cost_kind(rep)] * shaded_px +
            model->hidden_pixel_ms * hidden_px +
-           model->edge_ms * prom_cost_edges(rep->triangles, shaded_px, hidden_px);
+           model->edge_ms * prom_cost_edges(rep->triangles, shaded_px, hidden_px) +
+           model->hidden_edge_ms * prom_cost_edges(rep->triangles, hidden_px, shaded_px);
 }

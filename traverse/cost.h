@@ -9,10 +9,10 @@
 
 typedef struct prom_cost_model {
     double fixed_ms, draw_ms, vertex_ms, triangle_ms, pixel_ms[PROM_COST_KINDS];
-    double edge_ms;         // see prom_cost_features: edges
-    double hidden_pixel_ms; // a pixel drawn behind what is there already (early z)
-    double mean_error;      // of the fit: mean |predicted/actual - 1|
-    double worst_under;     // greatest actual/predicted - 1
+    double edge_ms, hidden_edge_ms; // see prom_cost_features: edges
+    double hidden_pixel_ms;         // a pixel drawn behind what is there already (early z)
+    double mean_error;              // of the fit: mean |predicted/actual - 1|
+    double worst_under;             // greatest actual/predicted - 1
     double margin; // part of the budget kept back for noise, from repeats at calibration
     uint32_t sample_count;
     uint32_t width, height; // of the pictures that were timed; 0: not known

@@ -32,11 +32,11 @@ typedef struct field {
 #name, offsetof(prom_cost_model, name), least, most                                    \
     }
 static const field fields[] = {
-    FIELD(fixed_ms, 0.0, 1e6),   FIELD(draw_ms, 0.0, 1e6),
-    FIELD(vertex_ms, 0.0, 1e6),  FIELD(triangle_ms, 0.0, 1e6),
-    FIELD(edge_ms, 0.0, 1e6),    FIELD(hidden_pixel_ms, 0.0, 1e6),
-    FIELD(mean_error, 0.0, 1e6), FIELD(worst_under, 0.0, 1e6),
-    FIELD(margin, 0.0, 0.9),
+    FIELD(fixed_ms, 0.0, 1e6),        FIELD(draw_ms, 0.0, 1e6),
+    FIELD(vertex_ms, 0.0, 1e6),       FIELD(triangle_ms, 0.0, 1e6),
+    FIELD(edge_ms, 0.0, 1e6),         FIELD(hidden_edge_ms, 0.0, 1e6),
+    FIELD(hidden_pixel_ms, 0.0, 1e6), FIELD(mean_error, 0.0, 1e6),
+    FIELD(worst_under, 0.0, 1e6),     FIELD(margin, 0.0, 0.9),
 };
 enum { FIELD_COUNT = sizeof fields / sizeof *fields };
 

@@ -39,7 +39,8 @@ void fuzz_seeds(void (*each)(void *user, const char *name, const void *bytes, si
     static const char *const texts[] = {
         "{\"format\": \"promenade-cost-profile\", \"version\": 2, \"renderer\": \"llvmpipe\","
         "\"sample_count\": 90, \"width\": 1280, \"height\": 720, \"fixed_ms\": 0.4,"
-        "\"draw_ms\": 0.002, \"vertex_ms\": 2e-5, \"triangle_ms\": 5e-5, \"edge_ms\": 6e-6,"
+        "\"draw_ms\": 0.002, \"vertex_ms\": 2e-5, \"triangle_ms\": 5e-5, \"edge_ms\": 6e-6, "
+        "\"hidden_edge_ms\": 2e-6,"
         "\"hidden_pixel_ms\": 1e-7,"
         "\"mean_error\": 0.05, \"worst_under\": 0.2, \"margin\": 0.1, \"pixel_ms\": {"
         "\"plain\": 1e-6, \"textured\": 3e-6, \"masked\": 4e-6, \"blended\": 5e-6,"
