@@ -113,23 +113,27 @@ static prom_status draw(const shot_options *o, prom_session *session, prom_error
     } else {
         prom_path_pose(&session->path, o->frame, &camera);
     }
+    const prom_selector_class *class = prom_selector_class_named(o->view.selector);
     prom_governor governor;
     prom_governor_init(&governor, session->cost.margin);
     double allowed = budgeted ? prom_governor_budget(&governor, o->view.budget_ms) : INFINITY;
     prom_sight sight;
     prom_cut cut = {0};
     prom_status status = prom_sight_init(&sight, session, error);
-    for (int i = 0; !status && i < (sight.counter ? SETTLE_FRAMES : 1); i++) {
+    // What hides what changes costs, and so only cuts that these matter to. Edges hide nothing:
+    // the frames before the picture are drawn plain.
+    const prom_frame_options plain = {0};
+    int frames = !status && sight.counter && class->uses_cost ? SETTLE_FRAMES : 1;
+    for (int i = 0; !status && i < frames; i++) {
         prom_renderer_take_stats(session->renderer);
         prom_sight_begin(&sight, &camera);
         prom_session_select(session, selector, sight.visibility, &camera, allowed,
                             o->view.distance_scale, &cut);
-        prom_sight_draw(&sight, &cut, &camera, &o->draw);
+        prom_sight_draw(&sight, &cut, &camera, i + 1 < frames ? &plain : &o->draw);
     }
     prom_sight_finish(&sight);
     prom_draw_stats stats = prom_renderer_take_stats(session->renderer);
-    bool heeds = prom_selector_class_named(o->view.selector)->budgeted;
-    if (heeds && cut.cmin_ms > allowed)
+    if (class->budgeted && cut.cmin_ms > allowed)
         prom_log(PROM_LOG_WARNING,
                  "budget %g ms: even the cheapest cut is predicted at %.1f ms of drawing",
                  o->view.budget_ms, cut.cmin_ms);

@@ -122,6 +122,20 @@ static void shots_are_written(void **state)
     assert_int_equal(count_others(".", made), 0);
 }
 
+// What it is drawn as has no part in what is chosen.
+static void a_wireframe_is_that_of_the_picture(void **state)
+{
+    (void)state;
+    NEED_DEVICE();
+    char plain[256];
+    expect("shot city.prom --path city.path --frame 10 --budget-ms 1 -o a.png" SMALL, 0);
+    snprintf(plain, sizeof plain, "%s", run.out);
+    expect(
+        "shot city.prom --path city.path --frame 10 --budget-ms 1 --wireframe -o a.png" SMALL,
+        0);
+    assert_string_equal(run.out, plain);
+}
+
 static void shots_end_with_the_path(void **state)
 {
     (void)state;
@@ -413,6 +427,7 @@ int main(void)
         cmocka_unit_test(the_build_leaves_the_model_and_its_work),
         cmocka_unit_test(info_tells_what_was_built),
         cmocka_unit_test(shots_are_written),
+        cmocka_unit_test(a_wireframe_is_that_of_the_picture),
         cmocka_unit_test(shots_end_with_the_path),
         cmocka_unit_test(shots_measure_the_device_only_if_needed),
         cmocka_unit_test(bench_reports_every_selector),
