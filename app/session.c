@@ -3,6 +3,7 @@
 #include "app/calibration.h"
 #include "builder/image_io.h"
 #include "metaobj/base/clock.h"
+#include "metaobj/base/log.h"
 
 #include <math.h>
 #include <string.h>
@@ -14,6 +15,10 @@ static prom_status open_model(prom_session *s, const char *model_path, prom_erro
     prom_status status = prom_container_load_model(s->container, &s->model, error);
     if (!status && s->visibility & PROM_SEE_CELLS)
         status = prom_container_read_view_cells(s->container, &s->model, &s->cells, error);
+    if (!status && s->visibility == PROM_SEE_CELLS && !s->cells.cell_count)
+        prom_log(PROM_LOG_WARNING,
+                 "%s has no view cells: nothing counts as hidden (see `build --view-cells`)",
+                 model_path);
     return status;
 }
 

@@ -113,6 +113,7 @@ static const char *const wrong[][2] = {
     {"bench a.prom --frames 0", "--frames"},
     {"bench a.prom --quality-frames -1", "--quality-frames"},
     {"bench a.prom --ppd 0.5", "--ppd"},
+    {"bench a.prom --visibility all", "cells or both"},
     {"walk", "missing"},
     {"walk a.prom b.prom", "b.prom"},
     {"walk a.prom --frames 0", "--frames"},

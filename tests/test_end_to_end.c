@@ -421,6 +421,32 @@ static void the_strict_octree_builds(void **state)
     expect("bench strict.prom --frames 3 --warmup 0 --selector meta" SMALL, 0);
 }
 
+static void every_visibility_shows_everything(void **state)
+{
+    (void)state;
+    NEED_DEVICE();
+    expect("bench city.prom --path city.path --frames 3 --warmup 0 --budget-ms 1000 "
+           "--visibility cells" SMALL,
+           0);
+    assert_non_null(strstr(run.err, "no view cells"));
+    expect("build city.glb -o city.prom --quiet --view-cells city.path --view-cell-px 64", 0);
+    const char *const modes[] = {"none", "frame", "cells", "both"};
+    for (int i = 0; i < 4; i++) {
+        char arguments[256];
+        snprintf(arguments, sizeof arguments,
+                 "bench city.prom --path city.path --frames 6 --warmup 0 --budget-ms 1000 "
+                 "--quality-frames 0 --check-holes 6 --report r.json --visibility %s" SMALL,
+                 modes[i]);
+        expect(arguments, 0);
+        assert_string_equal(run.err, "");
+        json_t *report = json_load_file("r.json", 0, NULL);
+        json_t *one = json_array_get(at(report, "runs"), 0);
+        assert_string_equal(json_string_value(at(one, "visibility")), modes[i]);
+        assert_true(number(one, "holes.max") < 0.01);
+        json_decref(report);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -437,6 +463,7 @@ int main(void)
         cmocka_unit_test(damaged_files_are_named),
         cmocka_unit_test(the_same_build_has_the_same_content),
         cmocka_unit_test(the_strict_octree_builds),
+        cmocka_unit_test(every_visibility_shows_everything),
     };
     enter_scratch();
     int failed = cmocka_run_group_tests(tests, make_model, NULL);
