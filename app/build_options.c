@@ -300,7 +300,8 @@ const struct argp prom_argp_build = {
     .doc =
         "Build a model from a scene: glTF, GLB, OBJ, PLY, FBX, DAE, 3DS, STL, AC and what else "
         "assimp reads.\v"
-        "The model appears when the build has succeeded, or not at all. A build that was cut "
+        "The model appears when the build has succeeded, or not at all; its view cells are put "
+        "into it then, and without them it is as good. A build that was cut "
         "off goes on where it stopped when it is started again, and one with other options "
         "or a changed scene redoes only what depends on them: X.prom.work beside the model "
         "holds what was done. It may be deleted at any time.",

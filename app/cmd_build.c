@@ -129,6 +129,8 @@ static prom_status build_view_cells(prom_build_command *o, prom_build_report *re
     if (!status)
         status = prom_view_cells_build(o->output, (const double(*)[3])eyes->data, eyes->count,
                                        &o->cells, cells, error);
+    if (status && status != PROM_ERR_STOPPED)
+        prom_log(PROM_LOG_WARNING, "%s is there, without view cells", o->output);
     report->file_bytes = cells->file_bytes;
     report->work_bytes = cells->work_bytes;
     return status;

@@ -228,7 +228,8 @@ static void boxes_and_the_automatic_walk_have_eyes(void **state)
     run_program(&run, BUILD "--view-cells 0,50,0:80,60,20");
     assert_int_equal(run.code, 2);
     assert_non_null(strstr(run.err, "no floor"));
-    content(&cells); // the model is there
+    assert_non_null(strstr(run.err, "x.prom is there, without view cells"));
+    content(&cells);
     assert_int_equal(cells, 0);
 }
 
