@@ -41,12 +41,13 @@ static bool set_grid(const double (*eyes)[3], uint32_t count, prom_view_cells *g
 {
     double *along = prom_alloc(count, sizeof *along);
     bool good = true;
-    for (int k = 0; k < 3 && good; k++) {
+    for (int k = 0; k < 3; k++) {
         for (uint32_t i = 0; i < count && good; i++) {
             along[i] = eyes[i][k];
             good = isfinite(along[i]);
         }
-        if (good) qsort(along, count, sizeof *along, compare_numbers);
+        if (!good) break;
+        qsort(along, count, sizeof *along, compare_numbers);
         grid->origin[k] = along[count / 2] - 0.5 * grid->size;
     }
     prom_free(along);
