@@ -24,7 +24,7 @@ typedef struct prom_sight {
     float *px;          // per node; 0 between the frames
     uint64_t counted;   // frames, so far
     uint32_t uncounted; // frames since the last of them
-    float way;          // of the camera at that
+    double way;         // of the camera at that
 } prom_sight;
 
 // As the session's visibility mode says. On failure there is nothing to finish.

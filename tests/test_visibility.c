@@ -277,6 +277,38 @@ static void moving_forgets_and_turning_only_what_was_partly_outside(void **state
     bench_finish(&b);
 }
 
+// However far the camera has come before: small steps add up.
+static void steps_count_after_a_jump(void **state)
+{
+    (void)state;
+    uint64_t seed = 78;
+    bench b;
+    bench_init(&b, 79, &(random_model_options){.leaves = 80, .max_children = 6, .extent = 30});
+    prom_visibility *v = prom_visibility_create(&b.model, NULL);
+    do bench_look(&b, &seed);
+    while (!bench_run(&b, "full", 0)->entries.count);
+    prom_visible_count seen = {.entry = bench_run(&b, "full", 0)->entries.data[0]};
+    seen.px = seen.entry.footprint_px = 1000.0f;
+    seen.entry.whole = true;
+    prom_visibility_begin(v, &b.camera);
+    prom_visibility_feed(v, &seen, 1);
+    prom_camera camera = b.camera;
+    const double jump = 1e9;
+    camera.eye[0] += jump;
+    prom_visibility_begin(v, &camera);
+    double sight = jump / prom_visibility_way(v);
+    seen.px = 0.0f;
+    for (int i = 0; i < 20; i++) prom_visibility_feed(v, &seen, 1);
+    assert_true(prom_visibility_share(v, seen.entry.node) < 0.01f);
+    for (int step = 0; step < 200; step++) {
+        camera.eye[0] += 0.01 * sight;
+        prom_visibility_begin(v, &camera);
+    }
+    assert_true(prom_visibility_share(v, seen.entry.node) > 0.99f);
+    prom_visibility_destroy(v);
+    bench_finish(&b);
+}
+
 // What was not counted keeps its share; a node above is what most of it is.
 static void what_is_not_counted_keeps_its_share(void **state)
 {
@@ -365,6 +397,7 @@ int main(void)
         cmocka_unit_test(sums_go_up_the_tree),
         cmocka_unit_test(pixels_flow_down_without_loss),
         cmocka_unit_test(moving_forgets_and_turning_only_what_was_partly_outside),
+        cmocka_unit_test(steps_count_after_a_jump),
         cmocka_unit_test(what_is_not_counted_keeps_its_share),
         cmocka_unit_test(cells_are_what_is_known_at_first),
     };

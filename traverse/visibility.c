@@ -21,12 +21,12 @@
 #define LEAST_PX 1e-3f
 
 typedef struct node_state {
-    float share;         // as counted last
-    float moved, turned; // the odometers then
-    float prior;         // by the cell
-    uint32_t cell;       // the number of the cell's visit for which that holds
-    bool counted;        // share, moved, turned, whole are valid
-    bool whole;          // it was wholly in view
+    double moved, turned; // the odometers when it was counted last
+    float share;          // as counted then
+    float prior;          // by the cell
+    uint32_t cell;        // the number of the cell's visit for which that holds
+    bool counted;         // moved, turned, share, whole are valid
+    bool whole;           // it was wholly in view
 } node_state;
 
 // Sums over the entries below a node; valid for one feed.
@@ -44,8 +44,8 @@ struct prom_visibility {
     uint32_t *touched; // of one feed, or one cell
     uint32_t touched_count, feeds;
     // The camera's way: moved in units of the distance to what was seen, turned in units of the
-    // angle of view.
-    float moved, turned;
+    // angle of view. Doubles: a step counts after any jump too.
+    double moved, turned;
     float sight; // that distance
     prom_camera camera;
     bool has_camera;
@@ -162,14 +162,14 @@ static float prior_of(const prom_visibility *v, uint32_t node)
 
 // ---- counts
 
-static float moved_by(const prom_camera *from, const prom_camera *to)
+static double moved_by(const prom_camera *from, const prom_camera *to)
 {
     double square = 0.0;
     for (int k = 0; k < 3; k++) {
         double d = to->eye[k] - from->eye[k];
         square += d * d;
     }
-    return (float)sqrt(square);
+    return sqrt(square);
 }
 
 // The angle between two orientations: q and -q are the same one.
@@ -188,8 +188,8 @@ void prom_visibility_begin(prom_visibility *visibility, const prom_camera *camer
 {
     prom_visibility *v = visibility;
     if (v->has_camera) {
-        if (v->sight > 0.0f) v->moved += moved_by(&v->camera, camera) / v->sight;
-        v->turned += turned_by(&v->camera, camera) / camera->fov_y;
+        if (v->sight > 0.0f) v->moved += moved_by(&v->camera, camera) / (double)v->sight;
+        v->turned += (double)(turned_by(&v->camera, camera) / camera->fov_y);
     }
     v->camera = *camera;
     v->has_camera = true;
@@ -202,13 +202,13 @@ float prom_visibility_share(const prom_visibility *visibility, uint32_t node)
     const node_state *n = &v->nodes[node];
     float prior = prior_of(v, node);
     if (!n->counted) return prior;
-    float way = v->moved - n->moved + (n->whole ? 0.0f : v->turned - n->turned);
+    float way = (float)(v->moved - n->moved + (n->whole ? 0.0 : v->turned - n->turned));
     if (way <= SURE_WAY) return n->share;
     float beyond = (way - SURE_WAY) / HALF_WAY;
     return prior + (n->share - prior) * exp2f(-beyond * beyond);
 }
 
-float prom_visibility_way(const prom_visibility *visibility)
+double prom_visibility_way(const prom_visibility *visibility)
 {
     return visibility->moved + visibility->turned;
 }
@@ -225,9 +225,9 @@ static void settle(prom_visibility *v, uint32_t node)
         float most = !n->counted ? 1.0f : sum->px > 0.0f ? FALL : FALL_TO_NOTHING;
         now = before + fminf(sum->footprint_px / SURE_PX, most) * (now - before);
     }
-    *n = (node_state){.share = now,
-                      .moved = v->moved,
+    *n = (node_state){.moved = v->moved,
                       .turned = v->turned,
+                      .share = now,
                       .prior = n->prior,
                       .cell = n->cell,
                       .counted = true};
