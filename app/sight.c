@@ -1,10 +1,10 @@
 #include "app/sight.h"
 
 // Ids take 4 to 9 % of a frame on a software rasteriser (measured). So of a steady walk every
-// third frame is counted, but at once where the view has changed by this part of what counts
-// hold for.
+// third frame is counted, but at once where the camera has come this far (prom_visibility_way:
+// counts hold for a little more).
 #define COUNT_EVERY 3
-#define COUNT_WAY 0.05f
+#define COUNT_WAY 0.1
 // Of so many frames counted on a steady walk, in one what is blended is counted, in the others
 // what is not: a pixel has room for one of them.
 #define BLENDED_EVERY 4
@@ -85,10 +85,12 @@ static void note(prom_sight *s, const prom_cut *cut, prom_ids ids)
 static prom_ids due_ids(const prom_sight *s, const prom_cut *cut)
 {
     if (!s->counter) return PROM_IDS_NONE;
-    if (prom_visibility_way(s->visibility) - s->way > COUNT_WAY) return PROM_IDS_OPAQUE;
-    if (s->counted >= BLENDED_EVERY && s->uncounted + 1 < COUNT_EVERY) return PROM_IDS_NONE;
+    bool far = prom_visibility_way(s->visibility) - s->way > COUNT_WAY;
+    bool first = s->counted < BLENDED_EVERY;
+    if (!far && !first && s->uncounted + 1 < COUNT_EVERY) return PROM_IDS_NONE;
     bool turn = s->counted % BLENDED_EVERY == BLENDED_EVERY - 1;
-    return turn && has_blended(&s->session->model, cut) ? PROM_IDS_BLENDED : PROM_IDS_OPAQUE;
+    bool blended = turn && !far && has_blended(&s->session->model, cut);
+    return blended ? PROM_IDS_BLENDED : PROM_IDS_OPAQUE;
 }
 
 static void count(prom_sight *s, const prom_cut *cut, prom_ids ids)

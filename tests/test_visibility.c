@@ -242,7 +242,8 @@ static void moving_forgets_and_turning_only_what_was_partly_outside(void **state
     count_array counts = {0};
     count_cut(bench_run(&b, "full", 0), nothing_shows, &seed, &counts);
     counts.data[0].px = counts.data[0].entry.footprint_px = 1000.0f;
-    counts.data[0].entry.depth = 10.0f; // what is seen is 10 away
+    // What is seen is 10 away.
+    counts.data[0].entry.depth = 10.0f - 0.5f * b.model.radius[counts.data[0].entry.node];
     uint32_t whole = counts.data[1].entry.node, part = counts.data[2].entry.node;
     for (int i = 1; i <= 2; i++) {
         counts.data[i].entry.footprint_px = 1000.0f;

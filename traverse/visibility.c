@@ -233,14 +233,16 @@ static void settle(prom_visibility *v, uint32_t node)
                       .counted = true};
 }
 
-// The distance to what is seen: that of the entries, weighted by their pixels.
-static float sight_of(const prom_visible_count *counts, size_t count)
+// The distance to what is seen, about: that of the middle between the nearest point of each
+// entry and its centre, weighted by their pixels.
+static float sight_of(const prom_visibility *v, const prom_visible_count *counts, size_t count)
 {
     double sum = 0.0, weight = 0.0;
     for (size_t i = 0; i < count; i++) {
         if (!(counts[i].px > 0.0f)) continue;
-        sum += (double)counts[i].px * counts[i].entry.depth;
-        weight += counts[i].px;
+        const prom_cut_entry *e = &counts[i].entry;
+        sum += (double)counts[i].px * (double)(e->depth + 0.5f * v->model->radius[e->node]);
+        weight += (double)counts[i].px;
     }
     return weight > 0.0 ? (float)(sum / weight) : 0.0f;
 }
@@ -263,6 +265,6 @@ void prom_visibility_feed(prom_visibility *visibility, const prom_visible_count 
     for (uint32_t i = 0; i < v->touched_count; i++) settle(v, v->touched[i]);
     for (size_t i = 0; i < count; i++)
         if (counts[i].px >= 0.0f) v->nodes[counts[i].entry.node].whole = counts[i].entry.whole;
-    float sight = sight_of(counts, count);
+    float sight = sight_of(v, counts, count);
     if (sight > 0.0f) v->sight = sight;
 }
