@@ -58,21 +58,6 @@ bool prom_cell_view_unpack(prom_cell_view *view, const prom_model *model, const 
 
 // ---- all cells
 
-static const prom_eye_cell *cell_at(const prom_eye_cells *cells, const int32_t at[3])
-{
-    size_t low = 0, high = cells->cells.count;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        int order = prom_view_cube_order(cells->cells.data[middle].at, at);
-        if (!order) return &cells->cells.data[middle];
-        if (order < 0)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return NULL;
-}
-
 // codes: per node 1 + the code of its share, 0 for nothing.
 static void add_view(const prom_cell_view *v, int less, uint16_t *codes)
 {
@@ -83,16 +68,16 @@ static void add_view(const prom_cell_view *v, int less, uint16_t *codes)
 }
 
 // What a cell shows, and half of what those around it do: an eye near the border may see it.
-static void dilate(const prom_cell_view *views, const prom_eye_cells *cells,
-                   const prom_eye_cell *cell, uint16_t *codes)
+static void dilate(const prom_cell_view *views, const prom_view_cells *cells, uint32_t cell,
+                   uint16_t *codes)
 {
-    const prom_eye_cell *first = cells->cells.data;
-    add_view(&views[cell - first], 0, codes);
+    const int32_t *center = cells->cells[cell].at;
+    add_view(&views[cell], 0, codes);
     for (int i = 0; i < 27; i++) {
-        const int32_t at[3] = {cell->at[0] + i % 3 - 1, cell->at[1] + i / 3 % 3 - 1,
-                               cell->at[2] + i / 9 - 1};
-        const prom_eye_cell *other = cell_at(cells, at);
-        if (other && other != cell) add_view(&views[other - first], HALF, codes);
+        const int32_t at[3] = {center[0] + i % 3 - 1, center[1] + i / 3 % 3 - 1,
+                               center[2] + i / 9 - 1};
+        const prom_view_cell *other = i != 13 ? prom_view_cells_find(cells, at) : NULL;
+        if (other) add_view(&views[other - cells->cells], HALF, codes);
     }
 }
 
@@ -106,13 +91,13 @@ void prom_cell_views_join(const prom_cell_view *views, const prom_eye_cells *cel
     *joined = cells->grid;
     joined->cell_count = (uint32_t)cells->cells.count;
     joined->cells = prom_calloc(joined->cell_count, sizeof *joined->cells);
+    for (uint32_t c = 0; c < joined->cell_count; c++)
+        memcpy(joined->cells[c].at, cells->cells.data[c].at, sizeof joined->cells[c].at);
     for (uint32_t c = 0; c < joined->cell_count; c++) {
-        const prom_eye_cell *cell = &cells->cells.data[c];
         prom_view_cell *made = &joined->cells[c];
-        memcpy(made->at, cell->at, sizeof made->at);
         made->first = (uint32_t)leaves.count;
         memset(codes, 0, tree_count * sizeof *codes);
-        dilate(views, cells, cell, codes);
+        dilate(views, joined, c, codes);
         for (uint32_t n = 0; n < tree_count; n++) {
             if (!codes[n]) continue;
             prom_array_push(&leaves, n);

@@ -35,10 +35,8 @@ int prom_view_cube_order(const int32_t a[3], const int32_t b[3])
     return 0;
 }
 
-const prom_view_cell *prom_view_cells_at(const prom_view_cells *cells, const double point[3])
+const prom_view_cell *prom_view_cells_find(const prom_view_cells *cells, const int32_t at[3])
 {
-    int32_t at[3];
-    if (!cells->cell_count || !prom_view_cells_cube(cells, point, at)) return NULL;
     uint32_t low = 0, high = cells->cell_count;
     while (low < high) {
         uint32_t middle = low + (high - low) / 2;
@@ -50,6 +48,13 @@ const prom_view_cell *prom_view_cells_at(const prom_view_cells *cells, const dou
             high = middle;
     }
     return NULL;
+}
+
+const prom_view_cell *prom_view_cells_at(const prom_view_cells *cells, const double point[3])
+{
+    int32_t at[3];
+    if (!cells->cell_count || !prom_view_cells_cube(cells, point, at)) return NULL;
+    return prom_view_cells_find(cells, at);
 }
 
 uint8_t prom_view_share_encode(double share)

@@ -30,6 +30,8 @@ void prom_view_cells_finish(prom_view_cells *cells); // {0} is allowed; frees wi
 bool prom_view_cells_cube(const prom_view_cells *cells, const double point[3], int32_t at[3]);
 // Order of two cubes, as cells stand: below, above or equal to 0.
 int prom_view_cube_order(const int32_t a[3], const int32_t b[3]);
+// The cell of a cube; NULL: there is none. Of the cells only where they are.
+const prom_view_cell *prom_view_cells_find(const prom_view_cells *cells, const int32_t at[3]);
 // The cell that holds a point; NULL: none does.
 const prom_view_cell *prom_view_cells_at(const prom_view_cells *cells, const double point[3]);
 
