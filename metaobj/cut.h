@@ -16,7 +16,7 @@ typedef struct prom_cut_entry {
     float depth;        // distance from the eye to the node's nearest point, for the draw order
     // As predicted when the entry was chosen:
     float footprint_px; // pixels of the viewport that the node would cover by itself
-    float visible_px;   // those of them that are not hidden behind other nodes
+    float visible_px;   // pixels of it that are not hidden; what was counted may be more
     float accuracy;     // of the representation in this view: benefit / visible_px
     float cost_ms;
     bool whole; // the node is wholly in view
