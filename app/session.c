@@ -19,6 +19,7 @@ static prom_status open_model(prom_session *s, const char *model_path, prom_erro
         prom_log(PROM_LOG_WARNING,
                  "%s has no view cells: nothing counts as hidden (see `build --view-cells`)",
                  model_path);
+    if (!s->cells.cell_count) s->visibility &= ~(unsigned)PROM_SEE_CELLS;
     return status;
 }
 
@@ -81,7 +82,9 @@ static prom_status open_all(prom_session *s, const prom_session_device *device,
 {
     uint32_t size_px[2] = {options->size_px[0], options->size_px[1]};
     double start = prom_clock_ms();
-    s->visibility = options->visibility;
+    // What does not choose by cost and benefit has no use for it.
+    if (prom_selector_class_named(options->selector)->uses_cost)
+        s->visibility = options->visibility;
     prom_status status = open_model(s, model_path, error);
     if (!status && with_path) status = open_path(s, options->path, path_frames, error);
     if (!status) status = open_device(s, device, size_px, error);

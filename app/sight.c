@@ -1,5 +1,7 @@
 #include "app/sight.h"
 
+#include "metaobj/base/log.h"
+
 // Ids take 4 to 9 % of a frame on a software rasteriser (measured). So of a steady walk every
 // third frame is counted, but at once where the camera has come this far (prom_visibility_way:
 // counts hold for a little more).
@@ -8,6 +10,15 @@
 // Of so many frames counted on a steady walk, in one what is blended is counted, in the others
 // what is not: a pixel has room for one of them.
 #define BLENDED_EVERY 4
+
+// Which nodes hold something see-through: leaves by themselves, the others by their children.
+static void find_glass(prom_glass_count *glass, const prom_model *m)
+{
+    for (uint32_t n = m->tree_count; n-- > 0;) {
+        if (m->prototypes[m->prototype[n]].flags & PROM_PROTO_BLENDED) glass[n].is = true;
+        if (glass[n].is && m->parent[n] != PROM_NONE) glass[m->parent[n]].is = true;
+    }
+}
 
 prom_status prom_sight_init(prom_sight *sight, prom_session *session, prom_error *error)
 {
@@ -19,6 +30,8 @@ prom_status prom_sight_init(prom_sight *sight, prom_session *session, prom_error
         sight->counter = prom_id_counter_create(model->tree_count, error);
         if (!sight->counter) return error->status;
         sight->px = prom_calloc(model->tree_count, sizeof *sight->px);
+        sight->glass = prom_calloc(model->tree_count, sizeof *sight->glass);
+        find_glass(sight->glass, model);
     }
     sight->visibility =
         prom_visibility_create(model, mode & PROM_SEE_CELLS ? &session->cells : NULL);
@@ -30,26 +43,32 @@ void prom_sight_finish(prom_sight *sight)
     prom_visibility_destroy(sight->visibility);
     prom_id_counter_destroy(sight->counter);
     prom_free(sight->px);
+    prom_free(sight->glass);
     for (int i = 0; i < PROM_ID_RING; i++) prom_array_finish(&sight->sightings[i].counts);
     *sight = (prom_sight){0};
 }
 
-static bool is_blended(const prom_model *model, uint32_t node)
+// Visible pixels of an entry after a counting of one kind of pixels; below 0: not known. A node
+// with glass needs both kinds, the other from not long ago.
+static float visible_px(prom_sight *s, uint32_t node, bool blended, uint64_t counting)
 {
-    return model->prototypes[model->prototype[node]].flags & PROM_PROTO_BLENDED;
+    prom_glass_count *glass = &s->glass[node];
+    if (!glass->is) return blended ? -1.0f : s->px[node];
+    uint32_t now = (uint32_t)counting + 1;
+    glass->px[blended] = s->px[node];
+    glass->at[blended] = now;
+    bool known = glass->at[!blended] && now - glass->at[!blended] <= 2 * BLENDED_EVERY;
+    return known ? glass->px[0] + glass->px[1] : -1.0f;
 }
 
 static void feed(prom_sight *s, const prom_id_counts *seen)
 {
     prom_sighting *sighting = &s->sightings[seen->frame % PROM_ID_RING];
     prom_visible_count *counts = sighting->counts.data;
+    bool blended = sighting->ids == PROM_IDS_BLENDED;
     for (size_t i = 0; i < seen->count; i++) s->px[seen->counts[i].id] = seen->counts[i].px;
-    for (size_t i = 0; i < sighting->counts.count; i++) {
-        uint32_t node = counts[i].entry.node;
-        bool counted =
-            is_blended(&s->session->model, node) == (sighting->ids == PROM_IDS_BLENDED);
-        counts[i].px = counted ? s->px[node] : -1.0f;
-    }
+    for (size_t i = 0; i < sighting->counts.count; i++)
+        counts[i].px = visible_px(s, counts[i].entry.node, blended, seen->frame);
     for (size_t i = 0; i < seen->count; i++) s->px[seen->counts[i].id] = 0.0f;
     prom_visibility_feed(s->visibility, counts, sighting->counts.count);
 }
@@ -62,10 +81,10 @@ void prom_sight_begin(prom_sight *sight, const prom_camera *camera)
     if (sight->visibility) prom_visibility_begin(sight->visibility, camera);
 }
 
-static bool has_blended(const prom_model *model, const prom_cut *cut)
+static bool has_glass(const prom_sight *s, const prom_cut *cut)
 {
     for (size_t i = 0; i < cut->entries.count; i++)
-        if (is_blended(model, cut->entries.data[i].node)) return true;
+        if (s->glass[cut->entries.data[i].node].is) return true;
     return false;
 }
 
@@ -89,13 +108,20 @@ static prom_ids due_ids(const prom_sight *s, const prom_cut *cut)
     bool first = s->counted < BLENDED_EVERY;
     if (!far && !first && s->uncounted + 1 < COUNT_EVERY) return PROM_IDS_NONE;
     bool turn = s->counted % BLENDED_EVERY == BLENDED_EVERY - 1;
-    bool blended = turn && !far && has_blended(&s->session->model, cut);
+    bool blended = turn && !far && has_glass(s, cut);
     return blended ? PROM_IDS_BLENDED : PROM_IDS_OPAQUE;
 }
 
 static void count(prom_sight *s, const prom_cut *cut, prom_ids ids)
 {
-    if (!prom_id_counter_start(s->counter, s->session->target, s->counted)) return;
+    // The ring is never full here: frames are waited for, and their counts taken.
+    if (!prom_id_counter_start(s->counter, s->session->target, s->counted)) {
+        prom_log(PROM_LOG_WARNING, "the device has no memory to count pixels with: what is "
+                                   "hidden is not found out any more");
+        prom_id_counter_destroy(s->counter);
+        s->counter = NULL;
+        return;
+    }
     note(s, cut, ids);
     s->counted++;
     s->uncounted = 0;

@@ -16,15 +16,23 @@ typedef struct prom_sighting {
     PROM_ARRAY(prom_visible_count) counts; // its cut; px is filled in when they are known
 } prom_sighting;
 
+// Of a node that is see-through in part: both kinds of pixels, as counted last.
+typedef struct prom_glass_count {
+    bool is;        // there is something see-through in it
+    float px[2];    // 0: what is not, 1: what is
+    uint32_t at[2]; // 1 + the counting; 0: none yet
+} prom_glass_count;
+
 typedef struct prom_sight {
     prom_session *session;
     prom_visibility *visibility; // NULL: nothing is known, nor asked for
     prom_id_counter *counter;    // NULL: frames are not counted
     prom_sighting sightings[PROM_ID_RING];
-    float *px;          // per node; 0 between the frames
-    uint64_t counted;   // frames, so far
-    uint32_t uncounted; // frames since the last of them
-    double way;         // of the camera at that
+    float *px;               // per node; 0 between the frames
+    prom_glass_count *glass; // per node
+    uint64_t counted;        // frames, so far
+    uint32_t uncounted;      // frames since the last of them
+    double way;              // of the camera at that
 } prom_sight;
 
 // As the session's visibility mode says. On failure there is nothing to finish.

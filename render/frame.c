@@ -65,7 +65,7 @@ static void add_node(prom_draw_list *list, const prom_model *model, const prom_c
         .id = node,
         .depth = entry->depth,
         .background = node >= model->tree_count,
-        .hidden = entry->visible_px < PROM_HIDDEN_SHARE * entry->footprint_px,
+        .hidden = !(entry->visible_px > 0),
     };
     for (int i = 0; i < 3; i++) item.origin[i] = (float)(placement->origin[i] - camera->eye[i]);
     memcpy(item.basis, placement->basis, sizeof item.basis);

@@ -46,10 +46,19 @@ prom_id_counter *prom_id_counter_create(uint32_t id_count, prom_error *error)
     return counter;
 }
 
+static void release_oldest(prom_id_counter *c)
+{
+    slot *s = &c->slots[c->oldest];
+    glDeleteSync(s->fence);
+    s->fence = NULL;
+    c->oldest = (c->oldest + 1) % PROM_ID_RING;
+    c->under_way--;
+}
+
 void prom_id_counter_destroy(prom_id_counter *counter)
 {
     if (!counter) return;
-    prom_id_counter_clear(counter);
+    while (counter->under_way) release_oldest(counter);
     for (int i = 0; i < PROM_ID_RING; i++) glDeleteBuffers(1, &counter->slots[i].buffer);
     glDeleteProgram(counter->program);
     prom_array_finish(&counter->seen);
@@ -130,15 +139,6 @@ bool prom_id_counter_start(prom_id_counter *counter, prom_target *target, uint64
 
 // ---- taking
 
-static void release_oldest(prom_id_counter *c)
-{
-    slot *s = &c->slots[c->oldest];
-    glDeleteSync(s->fence);
-    s->fence = NULL;
-    c->oldest = (c->oldest + 1) % PROM_ID_RING;
-    c->under_way--;
-}
-
 static GLenum wait_for(const slot *s, bool wait)
 {
     GLenum result;
@@ -182,9 +182,4 @@ bool prom_id_counter_take(prom_id_counter *counter, bool wait, prom_id_counts *c
     }
     release_oldest(counter);
     return arrived;
-}
-
-void prom_id_counter_clear(prom_id_counter *counter)
-{
-    while (counter->under_way) release_oldest(counter);
 }

@@ -41,7 +41,5 @@ typedef struct prom_id_counts {
 // The oldest counting that has not been given yet. False if it has not arrived, or there is
 // none; with `wait`, it is waited for.
 bool prom_id_counter_take(prom_id_counter *counter, bool wait, prom_id_counts *counts);
-// Gives up what is under way.
-void prom_id_counter_clear(prom_id_counter *counter);
 
 #endif

@@ -125,10 +125,6 @@ typedef struct prom_frame_options {
     bool no_background;
 } prom_frame_options;
 
-// An entry of a cut counts as hidden when less than this share of its footprint is expected to
-// show. Chosen by taste: what is wrong about it costs time only, and little.
-#define PROM_HIDDEN_SHARE 0.01f
-
 // Draws the cut and the background layer of a loaded model from a camera: fills the list,
 // clears the target with the sky colour (alpha 0), submits. Does not wait.
 void prom_renderer_draw_frame(prom_renderer *renderer, prom_draw_list *list,

@@ -181,9 +181,6 @@ static void sums_go_up_the_tree(void **state)
             assert_float_equal(share, 1.0f, 0.0f);
         }
     }
-    prom_visibility_forget(v);
-    for (uint32_t n = 0; n < b.model.tree_count; n++)
-        assert_float_equal(prom_visibility_share(v, n), 1.0f, 0.0f);
     prom_free(px);
     prom_free(footprint);
     prom_array_finish(&counts);

@@ -432,7 +432,7 @@ static void at_rest_nothing_is_drawn(void **state)
     wait_for_title("at rest");
     nap(1000);
     end_walk();
-    assert_true(read_ending().frames < 10);
+    assert_true(read_ending().frames < 20);
 }
 
 static void the_path_is_played(void **state)

@@ -73,13 +73,6 @@ void prom_visibility_destroy(prom_visibility *visibility)
     prom_free(visibility);
 }
 
-void prom_visibility_forget(prom_visibility *visibility)
-{
-    for (uint32_t n = 0; n < visibility->model->tree_count; n++)
-        visibility->nodes[n].counted = false;
-    visibility->has_camera = false;
-}
-
 // Adds to the sums of a node and of all above it, up to the root.
 static void add_upwards(prom_visibility *v, uint32_t node, node_sum more)
 {

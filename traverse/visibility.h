@@ -46,7 +46,5 @@ float prom_visibility_share(const prom_visibility *visibility, uint32_t node);
 // How far the camera has come so far: moved, in units of the distance to what it sees, and
 // turned, in units of its angle of view.
 double prom_visibility_way(const prom_visibility *visibility);
-// As if nothing had been seen: after a jump, or when the pictures changed their size.
-void prom_visibility_forget(prom_visibility *visibility);
 
 #endif
