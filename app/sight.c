@@ -3,10 +3,12 @@
 #include "metaobj/base/log.h"
 
 // Ids take 4 to 9 % of a frame on a software rasteriser (measured). So of a steady walk every
-// third frame is counted, but at once where the camera has come this far (prom_visibility_way:
-// counts hold for a little more).
+// third frame is counted, or the next one once the camera has come COUNT_WAY
+// (prom_visibility_way: counts hold for a little more). After a jump the next COUNT_ALL are.
 #define COUNT_EVERY 3
 #define COUNT_WAY 0.1
+#define JUMP_WAY 0.2
+#define COUNT_ALL 6
 // Of so many frames counted on a steady walk, in one what is blended is counted, in the others
 // what is not: a pixel has room for one of them.
 #define BLENDED_EVERY 4
@@ -24,7 +26,7 @@ prom_status prom_sight_init(prom_sight *sight, prom_session *session, prom_error
 {
     const prom_model *model = &session->model;
     prom_visibility_mode mode = session->visibility;
-    *sight = (prom_sight){.session = session};
+    *sight = (prom_sight){.session = session, .in_a_row = COUNT_ALL};
     if (mode == PROM_SEE_NONE) return PROM_OK;
     if (mode & PROM_SEE_FRAME) {
         sight->counter = prom_id_counter_create(model->tree_count, error);
@@ -105,8 +107,7 @@ static prom_ids due_ids(const prom_sight *s, const prom_cut *cut)
 {
     if (!s->counter) return PROM_IDS_NONE;
     bool far = prom_visibility_way(s->visibility) - s->way > COUNT_WAY;
-    bool first = s->counted < BLENDED_EVERY;
-    if (!far && !first && s->uncounted + 1 < COUNT_EVERY) return PROM_IDS_NONE;
+    if (!far && !s->in_a_row && s->uncounted + 1 < COUNT_EVERY) return PROM_IDS_NONE;
     bool turn = s->counted % BLENDED_EVERY == BLENDED_EVERY - 1;
     bool blended = turn && !far && has_glass(s, cut);
     return blended ? PROM_IDS_BLENDED : PROM_IDS_OPAQUE;
@@ -123,9 +124,14 @@ static void count(prom_sight *s, const prom_cut *cut, prom_ids ids)
         return;
     }
     note(s, cut, ids);
+    double way = prom_visibility_way(s->visibility);
+    if (way - s->way > JUMP_WAY)
+        s->in_a_row = COUNT_ALL;
+    else if (s->in_a_row)
+        s->in_a_row--;
+    s->way = way;
     s->counted++;
     s->uncounted = 0;
-    s->way = prom_visibility_way(s->visibility);
 }
 
 void prom_sight_draw(prom_sight *sight, const prom_cut *cut, const prom_camera *camera,

@@ -32,6 +32,7 @@ typedef struct prom_sight {
     prom_glass_count *glass; // per node
     uint64_t counted;        // frames, so far
     uint32_t uncounted;      // frames since the last of them
+    uint32_t in_a_row;       // frames that are still to be counted whatever the camera does
     double way;              // of the camera at that
 } prom_sight;
 

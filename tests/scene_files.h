@@ -120,9 +120,8 @@ static inline char *scene_gltf(const char *uri, const char *rest)
 static inline const char *scene_write_gltf(const char *name, const char *rest)
 {
     char *data = scene_base64(&scene_triangle_unit, sizeof scene_triangle_unit);
-    char *uri = malloc(strlen(data) + 64);
-    assert_non_null(uri);
-    sprintf(uri, "data:application/octet-stream;base64,%s", data);
+    char *uri = NULL;
+    assert_true(asprintf(&uri, "data:application/octet-stream;base64,%s", data) > 0);
     char *text = scene_gltf(uri, rest);
     const char *path = scene_write(name, text);
     free(data);
