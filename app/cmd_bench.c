@@ -100,8 +100,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
             (uint32_t)prom_option_whole(state, "--quality-frames", text, 0, 100000);
         break;
     case KEY_PPD:
-        o->loop.ppd =
-            prom_option_number(state, "--ppd", text, PROM_FLIP_PPD_MIN, PROM_FLIP_PPD_MAX);
+        o->loop.ppd = prom_option_number(state, "--ppd", text, PROM_PPD_MIN, PROM_PPD_MAX);
         break;
     default:
         return prom_option_model(key, text, state, &o->model);

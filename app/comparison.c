@@ -1,7 +1,7 @@
 #include "app/comparison.h"
 
 #include "app/pixel_shares.h"
-#include "benefit/metric.h"
+#include "benefit/edge_blur.h"
 
 #include <math.h>
 

@@ -154,7 +154,7 @@ static prom_status walk(loop *l, prom_loop_result *result, prom_error *error)
 
 static double full_screen_ppd(uint32_t width)
 {
-    return fmax(PROM_FLIP_PPD * width / PROM_FLIP_SCREEN_PX, PROM_FLIP_PPD_MIN);
+    return fmax(PROM_FLIP_PPD * width / PROM_FLIP_SCREEN_PX, PROM_PPD_MIN);
 }
 
 static prom_status open_comparison(loop *l, double ppd, prom_error *error)

@@ -3,26 +3,71 @@
 #include <assert.h>
 #include <math.h>
 
-float prom_accuracy(const prom_model *model, uint32_t rep, uint32_t dir, float size_px,
+void prom_accuracy_place_init(prom_accuracy_place *place, const float uv[2], float size_px)
+{
+    place->uv[0] = uv[0];
+    place->uv[1] = uv[1];
+    place->size_px = size_px;
+    prom_directions_around(uv, &place->around);
+    float bin = prom_bin_of_size(size_px);
+    place->size = bin < PROM_SIZES - 1 ? (uint32_t)bin : PROM_SIZES - 2;
+    place->t = fminf(bin - (float)place->size, 1.0f);
+    if (size_px > PROM_SIZE_MAX_PX) prom_axes_around(uv, &place->axes);
+}
+
+static float between(float low, float high, float t)
+{
+    return low + t * (high - low);
+}
+
+// Up to the largest size of all directions.
+static float far_accuracy(const prom_accuracy_row *row, const prom_accuracy_place *place)
+{
+    float sum = 0.0f;
+    for (int k = 0; k < 4; k++) {
+        const uint8_t *a = &row->bins[place->around.dir[k]][place->size];
+        sum += place->around.weight[k] * between((float)a[0], (float)a[1], place->t);
+    }
+    return sum / 255.0f;
+}
+
+// What is left along the axes of the accuracy at PROM_SIZE_MAX_PX.
+static float large_ratio(const prom_accuracy_row *row, const prom_accuracy_place *place)
+{
+    float sums[1 + PROM_SIZES_LARGE] = {0.0f};
+    for (int k = 0; k < 3; k++) {
+        uint32_t dir = place->axes.dir[k];
+        float weight = place->axes.weight[k];
+        sums[0] += weight * (float)row->bins[dir][PROM_SIZES - 1];
+        for (int s = 0; s < PROM_SIZES_LARGE; s++)
+            sums[1 + s] += weight * (float)row->large[dir][s];
+    }
+    if (!(sums[0] > 0.0f)) return 1.0f; // nothing to see along the axes
+    float bin = fminf(prom_bin_of_size(place->size_px) - (PROM_SIZES - 1), PROM_SIZES_LARGE);
+    int s = bin < PROM_SIZES_LARGE - 1 ? (int)bin : PROM_SIZES_LARGE - 1;
+    return fminf(between(sums[s], sums[s + 1], bin - (float)s) / sums[0], 1.0f);
+}
+
+static float near_ratio(const prom_representation *rep, float size_px, float radius)
+{
+    if (!(radius > 0.0f)) return 1.0f;
+    float per_px = rep->near_k * rep->error / (2.0f * radius);
+    return (1.0f + per_px * PROM_SIZE_MAX_LARGE_PX) / (1.0f + per_px * size_px);
+}
+
+float prom_accuracy(const prom_model *model, uint32_t rep, const prom_accuracy_place *place,
                     float radius)
 {
-    assert(rep < model->rep_count && dir < PROM_DIRS);
-    const uint8_t *row = model->accuracy[rep][dir];
-    if (!(size_px > PROM_SIZE_MIN_PX)) return (float)row[0] / 255.0f;
-    if (size_px < PROM_SIZE_MAX_PX) {
-        float position = log2f(size_px / PROM_SIZE_MIN_PX);
-        int bin = (int)position;
-        if (bin > PROM_SIZES - 2) bin = PROM_SIZES - 2;
-        float t = position - (float)bin;
-        float low = (float)row[bin], high = (float)row[bin + 1];
-        return (low + t * (high - low)) / 255.0f;
-    }
+    assert(rep < model->rep_count);
+    const prom_accuracy_row *row = &model->accuracy[rep];
+    float accuracy = far_accuracy(row, place);
+    if (place->size_px <= PROM_SIZE_MAX_PX) return accuracy;
     const prom_representation *r = &model->reps[rep];
-    float largest = (float)row[PROM_SIZES - 1] / 255.0f;
-    if (r->kind != PROM_REP_MESH || !(radius > 0.0f)) return largest;
-    float per_px = r->error / (2.0f * radius);
-    return largest * ((1.0f + r->near_k * per_px * PROM_SIZE_MAX_PX) /
-                      (1.0f + r->near_k * per_px * size_px));
+    if (r->kind != PROM_REP_MESH)
+        return fmaxf(1.0f - (1.0f - accuracy) * place->size_px / PROM_SIZE_MAX_PX, 0.0f);
+    accuracy *= large_ratio(row, place);
+    if (place->size_px <= PROM_SIZE_MAX_LARGE_PX) return accuracy;
+    return accuracy * near_ratio(r, place->size_px, radius);
 }
 
 float prom_footprint_px(const prom_model *model, uint32_t prototype, uint32_t dir,

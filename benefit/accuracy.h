@@ -4,13 +4,30 @@
 
 #include "metaobj/model.h"
 
-// Accuracy in [0,1] of representation `rep` seen from direction bin `dir` with its bounding
-// sphere's diameter `size_px`: linear in log2 of the size between the size bins, the smallest
-// bin's value below; above the largest, for meshes,
-//     a(dir, 128 px) * near(e_px) / near(e_px at 128 px),  near(e) = 1 / (1 + near_k * e),
-// with e_px = error * size_px / (2 * radius): monotone, continuous, 1 for full geometry.
+// A place in the tables: what all representations of a node seen in one view have in common.
+typedef struct prom_accuracy_place {
+    float uv[2];   // direction towards the eye, on the octahedral map
+    float size_px; // diameter of the bounding sphere, in pixels as those of the tables
+    prom_direction_weights around;
+    uint32_t size;          // bins size and size + 1, below the large ones,
+    float t;                // and where between them
+    prom_axis_weights axes; // from PROM_SIZE_MAX_PX on
+} prom_accuracy_place;
+
+// uv: prom_octahedral_encode of the direction in the prototype's frame.
+void prom_accuracy_place_init(prom_accuracy_place *place, const float uv[2], float size_px);
+
+// Accuracy in [0,1] of representation `rep` at a place: bilinear between the directions, linear
+// in log2 of the size between the size bins, the smallest bin's value below. Above
+// PROM_SIZE_MAX_PX:
+//   meshes: the value there times the ratio, at most 1, of the large sizes' values to it along
+//   the
+//     axes; and from PROM_SIZE_MAX_LARGE_PX on times near(e_px) / near(e_px there), with
+//     near(e) = 1 / (1 + near_k * e) and e_px = error * size_px / (2 * radius);
+//   others: the error grows with the size.
+// Continuous; nowhere above what was measured around the place; 1 for full geometry.
 // radius: of the prototype (same frame as the representation's error).
-float prom_accuracy(const prom_model *model, uint32_t rep, uint32_t dir, float size_px,
+float prom_accuracy(const prom_model *model, uint32_t rep, const prom_accuracy_place *place,
                     float radius);
 
 // Fits near_k >= 0 to a mesh level's own rows: least squares over (e_px, accuracy) pairs.

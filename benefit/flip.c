@@ -348,7 +348,7 @@ static void convert_row(void *user, size_t y, unsigned thread)
 
 prom_flip *prom_flip_create(uint32_t width, uint32_t height, double ppd)
 {
-    assert(width > 0 && height > 0 && ppd >= PROM_FLIP_PPD_MIN && ppd <= PROM_FLIP_PPD_MAX);
+    assert(width > 0 && height > 0 && ppd >= PROM_PPD_MIN && ppd <= PROM_PPD_MAX);
     prom_flip *f = prom_calloc(1, sizeof *f);
     f->width = width;
     f->height = height;

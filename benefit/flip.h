@@ -8,20 +8,18 @@
 #ifndef PROM_BENEFIT_FLIP_H
 #define PROM_BENEFIT_FLIP_H
 
+#include "metaobj/model.h"
+
 #include <stdint.h>
 
 // Pixels per degree of a screen 0.7 m wide with PROM_FLIP_SCREEN_PX pixels, 0.7 m away: the
 // authors' default. A picture shown over the whole width of that screen has its part of them.
 #define PROM_FLIP_PPD 67.0206
 #define PROM_FLIP_SCREEN_PX 3840
-// What filters are made for.
-#define PROM_FLIP_PPD_MIN 1.0
-#define PROM_FLIP_PPD_MAX 1000.0
-
 typedef struct prom_flip prom_flip;
 
 // Scratch memory for pictures of this size, and the filters for `ppd` pixels per degree, from
-// PROM_FLIP_PPD_MIN to PROM_FLIP_PPD_MAX.
+// PROM_PPD_MIN to PROM_PPD_MAX.
 prom_flip *prom_flip_create(uint32_t width, uint32_t height, double ppd);
 void prom_flip_destroy(prom_flip *flip); // NULL is allowed
 // Error of each pixel in [0,1] into `map` (width * height), and returned, its mean. Pictures:

@@ -2,7 +2,7 @@
 
 #include "metaobj/base/alloc.h"
 
-_Static_assert(PROM_DIR_GRID == 6, "the six faces use the first row of the atlas");
+_Static_assert(PROM_ATLAS_COLUMNS >= 6, "the six faces stand in a row of the atlas");
 
 struct prom_baker {
     prom_target *target;
@@ -27,7 +27,7 @@ void prom_views_finish(prom_views *views)
 prom_baker *prom_baker_create(prom_renderer *renderer, prom_error *error)
 {
     prom_baker *baker = prom_calloc(1, sizeof *baker);
-    baker->target = prom_target_create(PROM_ATLAS_PX, PROM_ATLAS_PX, true, error);
+    baker->target = prom_target_create(PROM_ATLAS_WIDTH, PROM_ATLAS_HEIGHT, true, error);
     if (!baker->target) {
         prom_baker_destroy(baker);
         return NULL;
@@ -82,8 +82,8 @@ void prom_baker_take_views(prom_baker *baker, float radius, prom_views *views)
         frame_of_direction(out, right, up);
         // The viewport counts from the bottom, the read-back from the top.
         prom_pass pass = {
-            .x = dir % PROM_DIR_GRID * PROM_VIEW_PX,
-            .y = PROM_ATLAS_PX - (dir / PROM_DIR_GRID + 1) * PROM_VIEW_PX,
+            .x = dir % PROM_ATLAS_COLUMNS * PROM_VIEW_PX,
+            .y = PROM_ATLAS_HEIGHT - (dir / PROM_ATLAS_COLUMNS + 1) * PROM_VIEW_PX,
             .width = PROM_VIEW_PX,
             .height = PROM_VIEW_PX,
             .output = PROM_OUTPUT_LIT,
@@ -91,9 +91,11 @@ void prom_baker_take_views(prom_baker *baker, float radius, prom_views *views)
         orthographic(right, up, out, radius, radius, 2.0f * radius, pass.projection);
         prom_draw_list_submit(baker->list, baker->target, &pass);
     }
-    prom_target_read_rgba(baker->target, 0, 0, PROM_ATLAS_PX, PROM_ATLAS_PX, views->rgba[0]);
+    prom_target_read_rgba(baker->target, 0, 0, PROM_ATLAS_WIDTH, PROM_ATLAS_HEIGHT,
+                          views->rgba[0]);
     if (views->ids)
-        prom_target_read_ids(baker->target, 0, 0, PROM_ATLAS_PX, PROM_ATLAS_PX, views->ids);
+        prom_target_read_ids(baker->target, 0, 0, PROM_ATLAS_WIDTH, PROM_ATLAS_HEIGHT,
+                             views->ids);
 }
 
 void prom_baker_take_faces(prom_baker *baker, const float half[3], prom_output output,

@@ -14,9 +14,12 @@
 
 // Orthographic views in which the diameter of the subject's bounding sphere is PROM_VIEW_PX, as
 // they come from the device: one atlas, rows from the top, the view of direction bin d at
-// column d % PROM_DIR_GRID and row d / PROM_DIR_GRID.
-#define PROM_ATLAS_PX (PROM_VIEW_PX * PROM_DIR_GRID)
-#define PROM_ATLAS_PIXELS ((size_t)PROM_ATLAS_PX * PROM_ATLAS_PX)
+// column d % PROM_ATLAS_COLUMNS and row d / PROM_ATLAS_COLUMNS.
+#define PROM_ATLAS_COLUMNS 9
+#define PROM_ATLAS_ROWS ((PROM_DIRS + PROM_ATLAS_COLUMNS - 1) / PROM_ATLAS_COLUMNS)
+#define PROM_ATLAS_WIDTH (PROM_VIEW_PX * PROM_ATLAS_COLUMNS)
+#define PROM_ATLAS_HEIGHT (PROM_VIEW_PX * PROM_ATLAS_ROWS)
+#define PROM_ATLAS_PIXELS ((size_t)PROM_ATLAS_WIDTH * PROM_ATLAS_HEIGHT)
 
 typedef struct prom_views {
     uint8_t (*rgba)[4]; // sRGB-encoded; alpha of at least 128 is covered
@@ -28,8 +31,8 @@ void prom_views_finish(prom_views *views); // {0} is allowed
 // The first pixel of a view in the atlas.
 static inline size_t prom_view_start(uint32_t dir)
 {
-    return (size_t)(dir / PROM_DIR_GRID) * PROM_VIEW_PX * PROM_ATLAS_PX +
-           dir % PROM_DIR_GRID * PROM_VIEW_PX;
+    return (size_t)(dir / PROM_ATLAS_COLUMNS) * PROM_VIEW_PX * PROM_ATLAS_WIDTH +
+           dir % PROM_ATLAS_COLUMNS * PROM_VIEW_PX;
 }
 
 typedef struct prom_baker prom_baker;

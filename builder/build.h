@@ -67,7 +67,7 @@ typedef struct prom_build_state {
     uint16_t (*coverage)[PROM_DIRS];
     PROM_ARRAY(prom_representation) reps;
     uint32_t gap_meshes; // meshes whose gaps were too large to be kept
-    PROM_ARRAY(struct prom_accuracy_row { uint8_t a[PROM_DIRS][PROM_SIZES]; }) accuracy;
+    PROM_ARRAY(prom_accuracy_row) accuracy;
     PROM_ARRAY(struct prom_share_row { uint16_t a[PROM_DIRS]; }) shares;
     PROM_ARRAY(prom_mesh_info) mesh_infos;
     PROM_ARRAY(prom_texture_info) texture_infos;

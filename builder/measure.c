@@ -1,6 +1,6 @@
 #include "builder/measure.h"
 
-#include "benefit/metric.h"
+#include "benefit/edge_blur.h"
 #include "metaobj/base/alloc.h"
 #include "metaobj/base/math.h"
 #include "metaobj/base/threads.h"
@@ -9,9 +9,7 @@
 #define BACKGROUNDS 2
 #define WINDOW_MAX (PROM_VIEW_PX + 2 * PAD)
 #define ENCODE_STEPS 4096
-#define GAP_SIZE 3
-_Static_assert(PROM_VIEW_PX >> (PROM_SIZES - 1 - GAP_SIZE) == PROM_GAP_PX,
-               "gaps have a size bin");
+#define GAP_SIZE 6 // prom_size_of_bin: PROM_GAP_PX
 
 // The part of a view in which something is to be seen: all else is background in every picture
 // and cannot err. In whole pixels of the smallest size, so that halving stays within it.
@@ -26,8 +24,9 @@ typedef struct level {
 
 // What a thread works in.
 typedef struct scratch {
-    frame frame; // of the present direction
-    level levels[2];
+    frame frame;     // of the present direction
+    level levels[2]; // the largest, and a smaller one
+    float between[PROM_VIEW_PIXELS];
     float grey[WINDOW_MAX * WINDOW_MAX], error[WINDOW_MAX * WINDOW_MAX];
     float features[2 * WINDOW_MAX * WINDOW_MAX];
     float *metric;
@@ -43,14 +42,15 @@ struct prom_measure {
     unsigned threads;
 };
 
-static uint32_t size_px(uint32_t s)
+// Pixels along what is `extent` at the largest size.
+static uint32_t at_size(uint32_t extent, uint32_t size)
 {
-    return PROM_VIEW_PX >> (PROM_SIZES - 1 - s);
+    return (uint32_t)ceilf((float)extent * prom_size_of_bin(size) / PROM_VIEW_PX);
 }
 
 static size_t window_pixels(uint32_t s)
 {
-    size_t side = size_px(s) + 2 * PAD;
+    size_t side = at_size(PROM_VIEW_PX, s) + 2 * PAD;
     return side * side;
 }
 
@@ -85,15 +85,23 @@ void prom_measure_destroy(prom_measure *m)
     prom_free(m);
 }
 
-// ---- the frame
+void prom_measure_tell(const prom_measure *m, prom_measured *measured)
+{
+    *measured = (prom_measured){.metric = "edge-blur",
+                                .ppd = 22.34f,
+                                .background = {m->background[0], m->background[1]},
+                                .veto_percentile = 1.0f,
+                                .veto_error = 1.0f};
+}
 
-#define FRAME_STEP (1u << (PROM_SIZES - 1)) // a pixel of the smallest size
+// ---- the frame
 
 // Grows box (x0, y0, x1, y1) by what a view covers.
 static void add_covered(const prom_views *views, uint32_t dir, uint32_t box[4])
 {
     for (uint32_t y = 0; y < PROM_VIEW_PX; y++) {
-        const uint8_t(*p)[4] = views->rgba + prom_view_start(dir) + (size_t)y * PROM_ATLAS_PX;
+        const uint8_t(*p)[4] =
+            views->rgba + prom_view_start(dir) + (size_t)y * PROM_ATLAS_WIDTH;
         uint32_t first = 0, last = PROM_VIEW_PX;
         while (first < last && p[first][3] < 128) first++;
         if (first == last) continue;
@@ -119,16 +127,9 @@ static frame frame_of(const prom_views *truth, prom_comparison *const *others, s
     }
     for (int k = 0; k < 2; k++) {
         if (low[k] >= high[k]) low[k] = 0; // nothing at all
-        low[k] = low[k] / FRAME_STEP * FRAME_STEP;
-        high[k] = (high[k] + FRAME_STEP - 1) / FRAME_STEP * FRAME_STEP;
-        if (high[k] <= low[k]) high[k] = low[k] + FRAME_STEP;
+        if (high[k] <= low[k]) high[k] = low[k] + 1;
     }
     return (frame){low[0], low[1], high[0] - low[0], high[1] - low[1]};
-}
-
-static uint32_t at_size(uint32_t extent, uint32_t size)
-{
-    return extent >> (PROM_SIZES - 1 - size);
 }
 
 static size_t pixels_of(const frame *f, uint32_t size)
@@ -143,7 +144,7 @@ static void unpack_view(const prom_views *views, uint32_t dir, const frame *f, l
 {
     for (uint32_t y = 0; y < f->height; y++) {
         const uint8_t(*p)[4] =
-            views->rgba + prom_view_start(dir) + (size_t)(y + f->y) * PROM_ATLAS_PX + f->x;
+            views->rgba + prom_view_start(dir) + (size_t)(y + f->y) * PROM_ATLAS_WIDTH + f->x;
         float *luminance = out->luminance + (size_t)y * f->width;
         float *coverage = out->coverage + (size_t)y * f->width;
         for (uint32_t x = 0; x < f->width; x++) {
@@ -157,20 +158,50 @@ static void unpack_view(const prom_views *views, uint32_t dir, const frame *f, l
     }
 }
 
-static void halve_plane(const float *in, uint32_t width, uint32_t height, float *out)
+// Area averages: pixel i of the output covers [i, i + 1) * step of the input, which is 0
+// outside.
+static void average_rows(const float *in, uint32_t width, uint32_t height, float step,
+                         uint32_t out_width, float *out)
 {
-    for (uint32_t y = 0; y < height / 2; y++, out += width / 2) {
-        const float *a = in + (size_t)2 * y * width, *b = a + width;
-        for (uint32_t x = 0; x < width / 2; x++)
-            out[x] = 0.25f * (a[2 * x] + a[2 * x + 1] + b[2 * x] + b[2 * x + 1]);
+    for (uint32_t y = 0; y < height; y++, in += width, out += out_width) {
+        for (uint32_t i = 0; i < out_width; i++) {
+            float from = (float)i * step, to = fminf(from + step, (float)width), sum = 0.0f;
+            for (uint32_t x = (uint32_t)from; (float)x < to; x++)
+                sum += in[x] * (fminf((float)x + 1.0f, to) - fmaxf((float)x, from));
+            out[i] = sum / step;
+        }
     }
 }
 
-static void halve(const level *in, const frame *f, uint32_t size, level *out)
+static void average_columns(const float *in, uint32_t width, uint32_t height, float step,
+                            uint32_t out_height, float *out)
 {
+    for (uint32_t i = 0; i < out_height; i++, out += width) {
+        float from = (float)i * step, to = fminf(from + step, (float)height);
+        for (uint32_t x = 0; x < width; x++) out[x] = 0.0f;
+        for (uint32_t y = (uint32_t)from; (float)y < to; y++) {
+            float part = (fminf((float)y + 1.0f, to) - fmaxf((float)y, from)) / step;
+            const float *row = in + (size_t)y * width;
+            for (uint32_t x = 0; x < width; x++) out[x] += part * row[x];
+        }
+    }
+}
+
+static void average_plane(const float *in, const frame *f, uint32_t size, float *between,
+                          float *out)
+{
+    float step = PROM_VIEW_PX / prom_size_of_bin(size);
     uint32_t width = at_size(f->width, size), height = at_size(f->height, size);
-    halve_plane(in->luminance, width, height, out->luminance);
-    halve_plane(in->coverage, width, height, out->coverage);
+    average_rows(in, f->width, f->height, step, width, between);
+    average_columns(between, width, f->height, step, height, out);
+}
+
+// The largest picture at another size.
+static void reduce(const level *largest, const frame *f, uint32_t size, float *between,
+                   level *out)
+{
+    average_plane(largest->luminance, f, size, between, out->luminance);
+    average_plane(largest->coverage, f, size, between, out->coverage);
 }
 
 // The features of the picture over a background, encoded, padded with the background.
@@ -203,9 +234,10 @@ static void take_truth(const prom_measure *m, const prom_views *views, uint32_t 
     unpack_view(views, dir, &s->frame, &s->covered[PROM_SIZES - 1]);
     for (uint32_t size = PROM_SIZES; size-- > 0;) {
         float *features = s->truth + m->features_of_size[size];
+        if (size < PROM_SIZES - 1)
+            reduce(&s->covered[PROM_SIZES - 1], &s->frame, size, s->between, &s->covered[size]);
         for (int b = 0; b < BACKGROUNDS; b++, features += 2 * window_pixels(size))
             take_features(m, &s->covered[size], size, m->background[b], s, features);
-        if (size) halve(&s->covered[size], &s->frame, size, &s->covered[size - 1]);
     }
 }
 
@@ -248,16 +280,15 @@ static uint8_t compare_size(const prom_measure *m, uint32_t size, const level *i
 
 static void compare(const prom_measure *m, uint32_t dir, prom_comparison *other, scratch *s)
 {
-    int now = 0;
-    unpack_view(other->views, dir, &s->frame, &s->levels[now]);
+    unpack_view(other->views, dir, &s->frame, &s->levels[0]);
     for (uint32_t size = PROM_SIZES; size-- > 0;) {
-        const level *in = &s->levels[now];
-        other->accuracy[dir][size] = compare_size(m, size, in, s);
+        const level *in = &s->levels[size < PROM_SIZES - 1];
+        if (size < PROM_SIZES - 1)
+            reduce(&s->levels[0], &s->frame, size, s->between, &s->levels[1]);
+        other->accuracy.bins[dir][size] = compare_size(m, size, in, s);
         if (size == GAP_SIZE)
             other->gaps[dir] =
                 count_gaps(s->covered[size].coverage, in->coverage, pixels_of(&s->frame, size));
-        if (size) halve(in, &s->frame, size, &s->levels[!now]);
-        now = !now;
     }
 }
 
@@ -279,7 +310,7 @@ void prom_measure_shares(const prom_views *views, uint32_t dir, uint32_t item_co
     uint32_t *counts = prom_calloc(item_count, sizeof *counts);
     uint64_t sum = 0;
     for (uint32_t y = 0; y < PROM_VIEW_PX; y++) {
-        const uint32_t *ids = views->ids + prom_view_start(dir) + (size_t)y * PROM_ATLAS_PX;
+        const uint32_t *ids = views->ids + prom_view_start(dir) + (size_t)y * PROM_ATLAS_WIDTH;
         for (uint32_t x = 0; x < PROM_VIEW_PX; x++)
             if (ids[x] < item_count) counts[ids[x]]++, sum++;
     }

@@ -7,6 +7,7 @@
 #define PROM_BUILDER_MEASURE_H
 
 #include "builder/bake.h"
+#include "metaobj/model.h"
 
 // Diameter in pixels at which gaps are counted.
 #define PROM_GAP_PX 64
@@ -16,7 +17,7 @@ typedef struct prom_measure prom_measure;
 // A representation under measurement, and what came of it.
 typedef struct prom_comparison {
     const prom_views *views;
-    uint8_t accuracy[PROM_DIRS][PROM_SIZES]; // 255 = 1
+    prom_accuracy_row accuracy;
     uint32_t gaps[PROM_DIRS]; // pixels, at PROM_GAP_PX, that the object covers whole (9 tenths)
                               // and the representation hardly (1 tenth): through them the
                               // background would show
@@ -25,6 +26,8 @@ typedef struct prom_comparison {
 // mean_luminance: linear, of the scene; the first background. The second one contrasts with it.
 prom_measure *prom_measure_create(float mean_luminance);
 void prom_measure_destroy(prom_measure *measure);
+// How it measures, for the model.
+void prom_measure_tell(const prom_measure *measure, prom_measured *measured);
 
 // Measures representations in one direction bin; different directions may be measured by
 // several threads at a time (`thread` below prom_thread_count()). Accuracy is 1 - error summed

@@ -27,6 +27,8 @@ void prom_build_place_nodes(prom_build_state *b)
     m->center = prom_arena_alloc(&m->arena, count, sizeof *m->center);
     m->half = prom_arena_alloc(&m->arena, count, sizeof *m->half);
     m->radius = prom_arena_alloc(&m->arena, count, sizeof *m->radius);
+    m->weight = prom_arena_alloc(&m->arena, count, sizeof *m->weight);
+    for (uint32_t i = 0; i < count; i++) m->weight[i] = 1.0f;
     for (uint32_t i = 0; i < tree_count; i++) {
         const prom_tree_node *n = &b->tree.nodes.data[i];
         bool leaf = n->object != PROM_NONE;
@@ -78,7 +80,8 @@ prom_status prom_stage_model(prom_build_state *b, prom_error *error)
     count_triangles(b);
     m->reps = b->reps.data;
     m->rep_count = (uint32_t)b->reps.count;
-    m->accuracy = (uint8_t(*)[PROM_DIRS][PROM_SIZES])b->accuracy.data;
+    m->accuracy = b->accuracy.data;
+    prom_measure_tell(b->measure, &m->measured);
     m->coverage = b->coverage;
     m->shares = (uint16_t(*)[PROM_DIRS])b->shares.data;
     m->share_count = (uint32_t)b->shares.count;

@@ -124,7 +124,7 @@ static float fit_near(const prom_comparison *result, float error, float radius)
     float e_px[PROM_SIZES], mean[PROM_SIZES];
     for (uint32_t s = 0; s < PROM_SIZES; s++) {
         uint32_t sum = 0;
-        for (uint32_t d = 0; d < PROM_DIRS; d++) sum += result->accuracy[d][s];
+        for (uint32_t d = 0; d < PROM_DIRS; d++) sum += result->accuracy.bins[d][s];
         e_px[s] = error * prom_size_of_bin(s) / (2.0f * radius);
         mean[s] = (float)sum / (255.0f * PROM_DIRS);
     }
@@ -173,7 +173,7 @@ static void settle(prom_subject *s, prom_candidate *c)
     rep->layers = mesh ? layers_of(s, c->mesh) : 1.0f;
     c->kept = true;
     if (c->admission != PROM_ADMIT_MEASURED) {
-        memset(c->result.accuracy, 255, sizeof c->result.accuracy);
+        memset(&c->result.accuracy, 255, sizeof c->result.accuracy);
         return;
     }
     uint32_t gaps = 0;
@@ -220,8 +220,7 @@ static prom_status write_candidate(prom_subject *s, prom_candidate *c, prom_erro
     if (proto->rep_count == 0) proto->first_rep = (uint32_t)b->reps.count;
     proto->rep_count++;
     prom_array_push(&b->reps, c->rep);
-    struct prom_accuracy_row *row = prom_array_extend(&b->accuracy, 1);
-    memcpy(row->a, c->result.accuracy, sizeof row->a);
+    prom_array_push(&b->accuracy, c->result.accuracy);
     return PROM_OK;
 }
 

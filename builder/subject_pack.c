@@ -11,7 +11,7 @@ static void pack_candidate(const prom_candidate *c, prom_pack *pack)
     rep.mesh = rep.texture = PROM_NONE; // of this build only
     prom_pack_bytes(pack, marks, sizeof marks);
     prom_pack_bytes(pack, &rep, sizeof rep);
-    prom_pack_bytes(pack, c->result.accuracy, sizeof c->result.accuracy);
+    prom_pack_bytes(pack, &c->result.accuracy, sizeof c->result.accuracy);
 }
 
 void prom_subject_pack(const prom_subject *s, prom_pack *pack)
@@ -39,7 +39,7 @@ static void unpack_candidate(prom_candidate *c, prom_unpack *in)
     c->kept = prom_unpack_u32(in, 1);
     c->pictured = prom_unpack_u32(in, 1);
     prom_unpack_bytes(in, &c->rep, sizeof c->rep);
-    prom_unpack_bytes(in, c->result.accuracy, sizeof c->result.accuracy);
+    prom_unpack_bytes(in, &c->result.accuracy, sizeof c->result.accuracy);
     if (!in->failed && !sound(&c->rep)) in->failed = true;
 }
 

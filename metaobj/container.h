@@ -15,7 +15,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define PROM_CONTAINER_VERSION 3
+#define PROM_CONTAINER_VERSION 4
 #define PROM_CONTAINER_APPLICATION_ID 0x50524f4d // "PROM"
 #define PROM_CONTAINER_CHUNK_BYTES (64u << 20)
 

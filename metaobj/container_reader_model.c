@@ -5,6 +5,7 @@
 #include "metaobj/base/log.h"
 
 #include <assert.h>
+#include <stdlib.h>
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "blobs are little-endian");
 
@@ -126,7 +127,7 @@ static void take_accuracy(void *user, prom_row_in *row)
     }
     const void *value = prom_take_blob(row, sizeof *l->model->accuracy);
     if (value && l->kept[row->id] != PROM_NONE)
-        memcpy(l->model->accuracy[l->kept[row->id]], value, sizeof *l->model->accuracy);
+        memcpy(&l->model->accuracy[l->kept[row->id]], value, sizeof *l->model->accuracy);
 }
 
 static void take_prototype(void *user, prom_row_in *row)
@@ -187,6 +188,29 @@ static void take_node(void *user, prom_row_in *row)
     prom_take_reals(row, m->center[n], 3);
     prom_take_floats(row, m->half[n], 3);
     prom_take_floats(row, &m->radius[n], 1);
+    prom_take_floats(row, &m->weight[n], 1);
+}
+
+static float meta_float(prom_container *c, const char *key)
+{
+    const char *text = prom_container_meta(c, key);
+    char *end = NULL;
+    float value = text ? strtof(text, &end) : NAN;
+    return text && end != text && !*end ? value : NAN;
+}
+
+// What is missing or wrong here is found by prom_model_check.
+static void take_measured(loader *l)
+{
+    prom_container *c = l->container;
+    prom_measured *m = &l->model->measured;
+    const char *metric = prom_container_meta(c, PROM_META_METRIC);
+    if (metric && strlen(metric) < sizeof m->metric) strcpy(m->metric, metric);
+    m->ppd = meta_float(c, PROM_META_PPD);
+    m->background[0] = meta_float(c, PROM_META_BACKGROUND_1);
+    m->background[1] = meta_float(c, PROM_META_BACKGROUND_2);
+    m->veto_percentile = meta_float(c, PROM_META_VETO_PERCENTILE);
+    m->veto_error = meta_float(c, PROM_META_VETO_ERROR);
 }
 
 static void *keep_array(prom_arena *arena, const void *data, size_t count, size_t size)
@@ -211,6 +235,7 @@ static void allocate(loader *l)
     m->center = prom_arena_alloc(a, n, sizeof *m->center);
     m->half = prom_arena_alloc(a, n, sizeof *m->half);
     m->radius = prom_arena_alloc(a, n, sizeof *m->radius);
+    m->weight = prom_arena_alloc(a, n, sizeof *m->weight);
     m->prototype_count = (uint32_t)c->rows[PROM_TABLE_PROTOTYPE];
     m->prototypes = prom_arena_alloc(a, m->prototype_count, sizeof *m->prototypes);
     m->coverage = prom_arena_alloc(a, m->prototype_count, sizeof *m->coverage);
@@ -260,6 +285,7 @@ static prom_status load(loader *l, prom_error *error)
 {
     prom_model *m = l->model;
     allocate(l);
+    take_measured(l);
     prom_status status = scan_tables(l, error);
     if (status) return status;
     m->share_count = (uint32_t)l->shares.count;

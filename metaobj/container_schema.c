@@ -24,7 +24,7 @@ const prom_table_schema prom_tables[PROM_TABLE_COUNT] = {
          "  basis_zx REAL NOT NULL, basis_zy REAL NOT NULL, basis_zz REAL NOT NULL,\n"
          "  center_x REAL NOT NULL, center_y REAL NOT NULL, center_z REAL NOT NULL,\n"
          "  half_x REAL NOT NULL, half_y REAL NOT NULL, half_z REAL NOT NULL,\n"
-         "  radius REAL NOT NULL) STRICT",
+         "  radius REAL NOT NULL, weight REAL NOT NULL) STRICT",
          NULL},
     [PROM_TABLE_PROTOTYPE] =
         {"prototype",

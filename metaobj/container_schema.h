@@ -8,6 +8,14 @@
 #include <sqlite3.h>
 #include <stddef.h>
 
+// Keys of meta: how the accuracies were measured (prom_measured).
+#define PROM_META_METRIC "accuracy.metric"
+#define PROM_META_PPD "accuracy.ppd"
+#define PROM_META_BACKGROUND_1 "accuracy.background_1"
+#define PROM_META_BACKGROUND_2 "accuracy.background_2"
+#define PROM_META_VETO_PERCENTILE "accuracy.veto_percentile"
+#define PROM_META_VETO_ERROR "accuracy.veto_error"
+
 typedef enum prom_table {
     PROM_TABLE_META,
     PROM_TABLE_NODE,

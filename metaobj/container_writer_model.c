@@ -2,6 +2,7 @@
 #include "metaobj/container_writer.h"
 
 #include <assert.h>
+#include <stdio.h>
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "blobs are little-endian");
 
@@ -20,6 +21,7 @@ static prom_status put_nodes(prom_writer *w, const prom_model *m, prom_error *er
         for (int a = 0; a < 3; a++) prom_put_real(&row, m->center[n][a]);
         prom_put_floats(&row, m->half[n], 3);
         prom_put_real(&row, m->radius[n]);
+        prom_put_real(&row, m->weight[n]);
         prom_status status = prom_row_end(&row, error);
         if (status) return status;
     }
@@ -84,7 +86,7 @@ static prom_status put_reps(prom_writer *w, const prom_model *m, prom_error *err
         status = put_rep(w, &m->reps[r], owner[r], error);
         if (status) break;
         prom_row_out row = prom_row_begin(w, PROM_TABLE_ACCURACY);
-        prom_put_blob(&row, m->accuracy[r], sizeof *m->accuracy);
+        prom_put_blob(&row, &m->accuracy[r], sizeof *m->accuracy);
         status = prom_row_end(&row, error);
     }
     prom_free(owner);
@@ -105,6 +107,27 @@ static prom_status put_materials(prom_writer *w, const prom_model *m, prom_error
         if (status) return status;
     }
     return PROM_OK;
+}
+
+static prom_status put_measured(prom_writer *w, const prom_measured *m, prom_error *error)
+{
+    const struct {
+        const char *key;
+        float value;
+    } numbers[] = {
+        {PROM_META_PPD, m->ppd},
+        {PROM_META_BACKGROUND_1, m->background[0]},
+        {PROM_META_BACKGROUND_2, m->background[1]},
+        {PROM_META_VETO_PERCENTILE, m->veto_percentile},
+        {PROM_META_VETO_ERROR, m->veto_error},
+    };
+    prom_status status = prom_writer_set_meta(w, PROM_META_METRIC, m->metric, error);
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers && !status; i++) {
+        char text[32];
+        snprintf(text, sizeof text, "%.9g", (double)numbers[i].value);
+        status = prom_writer_set_meta(w, numbers[i].key, text, error);
+    }
+    return status;
 }
 
 // The model must speak of exactly the meshes and textures that were added.
@@ -139,6 +162,7 @@ prom_status prom_writer_put_model(prom_writer *writer, const prom_model *model,
     if (!status) status = put_prototypes(writer, model, error);
     if (!status) status = put_reps(writer, model, error);
     if (!status) status = put_materials(writer, model, error);
+    if (!status) status = put_measured(writer, &model->measured, error);
     if (!status) status = prom_writer_exec(writer, "COMMIT; BEGIN", error);
     if (status)
         writer->broken = true; // rows of half a model

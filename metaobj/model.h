@@ -101,6 +101,26 @@ typedef struct prom_texture_info {
     uint32_t kind, width, height, layers, levels;
 } prom_texture_info;
 
+// Accuracies of a representation, 255 = 1, per view bin; 0 where it is not to be shown at all.
+typedef struct prom_accuracy_row {
+    uint8_t bins[PROM_DIRS][PROM_SIZES];
+    uint8_t large[PROM_DIRS_LARGE][PROM_SIZES_LARGE]; // of meshes; else 0
+} prom_accuracy_row;
+
+// How the accuracies were measured. Values of one metric, or for one ppd, say nothing of
+// another.
+#define PROM_METRIC_NAME_BYTES 16
+#define PROM_PPD_MIN 1.0f // pixels per degree that filters are made for
+#define PROM_PPD_MAX 1000.0f
+typedef struct prom_measured {
+    char metric[PROM_METRIC_NAME_BYTES]; // benefit/edge_blur.h
+    float ppd;                           // pixels per degree of the views
+    float background[2];                 // linear luminance
+    float veto_percentile, veto_error;   // of the footprint's pixels; above it accuracy is 0
+} prom_measured;
+
+#define PROM_WEIGHT_MAX 1e6f
+
 typedef struct prom_model {
     uint32_t node_count, tree_count;
     // Per node.
@@ -113,11 +133,13 @@ typedef struct prom_model {
     double (*center)[3]; // world bounds: centre,
     float (*half)[3];    // half extents,
     float *radius;       // and the sphere around centre
+    float *weight; // what a visible pixel of it is worth: semantics, 1 where nothing is said
     // Shared.
     uint32_t prototype_count, rep_count, material_count, mesh_count, texture_count;
     prom_prototype *prototypes;
     prom_representation *reps;
-    uint8_t (*accuracy)[PROM_DIRS][PROM_SIZES]; // per representation, 255 = 1
+    prom_measured measured;
+    prom_accuracy_row *accuracy;     // per representation
     uint16_t (*coverage)[PROM_DIRS]; // per prototype: covered share of the disc of its bounding
                                      // sphere, 65535 = 1
     uint32_t share_count;

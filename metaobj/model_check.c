@@ -41,7 +41,7 @@ static const char *check_arrays(const prom_model *m)
     if (!m->tree_count || m->tree_count > m->node_count)
         return "the tree has no root or more nodes than there are";
     if (!m->parent || !m->first_child || !m->child_count || !m->prototype || !m->name ||
-        !m->placement || !m->center || !m->half || !m->radius)
+        !m->placement || !m->center || !m->half || !m->radius || !m->weight)
         return "a node array is missing";
     if (m->prototype_count && (!m->prototypes || !m->coverage))
         return "a prototype array is missing";
@@ -51,6 +51,23 @@ static const char *check_arrays(const prom_model *m)
         return "an array is missing";
     if (!m->names || !m->names_bytes || m->names[0] || m->names[m->names_bytes - 1])
         return "the names do not start with the empty name or do not end with a zero";
+    return NULL;
+}
+
+static bool is_share(float v)
+{
+    return v >= 0 && v <= 1;
+}
+
+static const char *check_measured(const prom_measured *m)
+{
+    if (!m->metric[0] || !memchr(m->metric, 0, sizeof m->metric))
+        return "it is not said by which metric the accuracies were measured";
+    if (!(m->ppd >= PROM_PPD_MIN && m->ppd <= PROM_PPD_MAX))
+        return "the pixels per degree of the accuracies are out of range";
+    if (!is_share(m->background[0]) || !is_share(m->background[1]) ||
+        !is_share(m->veto_percentile) || !is_share(m->veto_error))
+        return "how the accuracies were measured is not said";
     return NULL;
 }
 
@@ -165,6 +182,8 @@ static const char *check_node(const prom_model *m, uint32_t n, uint32_t *next_ch
         return "a node's placement is out of range";
     if (!good_place(m->center[n]) || !good_bounds(m->half[n], m->radius[n]))
         return "a node's bounds are out of range or negative";
+    if (!(m->weight[n] >= 0 && m->weight[n] <= PROM_WEIGHT_MAX))
+        return "a node's weight is out of range";
     return NULL;
 }
 
@@ -191,6 +210,7 @@ const char *prom_model_check(const prom_model *model, uint64_t *row)
     if (!row) row = &unused;
     *row = 0;
     const char *wrong = check_arrays(m);
+    if (!wrong) wrong = check_measured(&m->measured);
     if (wrong) return wrong;
     for (*row = 0; *row < m->mesh_count; ++*row)
         if (m->meshes[*row].index_count % 3) return "a mesh's index count is no multiple of 3";

@@ -137,7 +137,7 @@ static inline void fixture_prototypes(prom_model *m, uint32_t clusters, uint32_t
         for (uint32_t p = 0; p < 4; p++) m->coverage[p][d] = (uint16_t)fixture_random(seed);
         for (uint32_t r = 0; r < 6; r++)
             for (uint32_t s = 0; s < PROM_SIZES; s++)
-                m->accuracy[r][d][s] = (uint8_t)fixture_random(seed);
+                m->accuracy[r].bins[d][s] = (uint8_t)fixture_random(seed);
     }
 }
 
@@ -159,6 +159,9 @@ static inline void fixture_nodes(prom_model *m, uint32_t clusters, uint32_t leav
     m->center = prom_arena_alloc(a, n, sizeof *m->center);
     m->half = prom_arena_alloc(a, n, sizeof *m->half);
     m->radius = prom_arena_alloc(a, n, sizeof *m->radius);
+    m->weight = prom_arena_alloc(a, n, sizeof *m->weight);
+    for (uint32_t i = 0; i < n; i++) m->weight[i] = 1.0f + 0.5f * (float)(i % 3);
+    m->measured = (prom_measured){"flip", 22.34f, {0.2f, 0.8f}, 0.95f, 0.9f};
     for (uint32_t i = 0; i < n; i++) {
         m->placement[i] = prom_placement_identity;
         m->first_child[i] = m->parent[i] = PROM_NONE;

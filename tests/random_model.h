@@ -84,9 +84,14 @@ static inline void random_add_rep(prom_model *m, uint64_t *seed, prom_rep_kind k
     m->meshes[r] = (prom_mesh_info){triangles, 3 * triangles, 1};
     for (uint32_t d = 0; d < PROM_DIRS; d++)
         for (uint32_t s = 0; s < PROM_SIZES; s++)
-            m->accuracy[r][d][s] =
+            m->accuracy[r].bins[d][s] =
                 (uint8_t)(255.0f *
                           (quality >= 1.0f ? 1.0f : quality * random_between(seed, 0.8f, 1)));
+    for (uint32_t d = 0; d < PROM_DIRS_LARGE && kind == PROM_REP_MESH; d++)
+        for (uint32_t s = 0; s < PROM_SIZES_LARGE; s++)
+            m->accuracy[r].large[d][s] =
+                quality >= 1.0f ? 255
+                                : (uint8_t)(m->accuracy[r].bins[d][PROM_SIZES - 1] / (2 + s));
 }
 
 static inline void random_prototype(prom_model *m, uint64_t *seed, uint32_t children)
@@ -162,6 +167,9 @@ static inline void random_allocate(prom_model *m, uint32_t nodes, uint32_t proto
     m->center = prom_arena_alloc(a, nodes, sizeof *m->center);
     m->half = prom_arena_alloc(a, nodes, sizeof *m->half);
     m->radius = prom_arena_alloc(a, nodes, sizeof *m->radius);
+    m->weight = prom_arena_alloc(a, nodes, sizeof *m->weight);
+    for (uint32_t n = 0; n < nodes; n++) m->weight[n] = 1.0f;
+    m->measured = (prom_measured){"flip", 22.34f, {0.2f, 0.8f}, 1.0f, 1.0f};
     m->prototypes = prom_arena_alloc(a, prototypes, sizeof *m->prototypes);
     m->coverage = prom_arena_alloc(a, prototypes, sizeof *m->coverage);
     m->reps = prom_arena_alloc(a, reps, sizeof *m->reps);
@@ -262,8 +270,7 @@ static inline prom_cost_model random_cost(uint64_t *seed)
                             .edge_ms = random_between(seed, 0, 2e-5f),
                             .hidden_edge_ms = random_between(seed, 0, 5e-6f),
                             .hidden_pixel_ms = random_between(seed, 0, 1e-6f)};
-    for (int k = 0; k < PROM_COST_KINDS; k++)
-        cost.pixel_ms[k] = random_between(seed, 0, 2e-5f);
+    for (int k = 0; k < PROM_COST_KINDS; k++) cost.pixel_ms[k] = random_between(seed, 0, 2e-5f);
     return cost;
 }
 

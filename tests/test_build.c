@@ -73,7 +73,7 @@ static void tables_of_a_built_model_hold(void **state)
             assert_true(m.coverage[p][d] > 0);
             if (!(proto->flags & PROM_PROTO_CLUSTER)) {
                 for (uint32_t s = 0; s < PROM_SIZES; s++)
-                    assert_int_equal(m.accuracy[proto->first_rep][d][s], 255);
+                    assert_int_equal(m.accuracy[proto->first_rep].bins[d][s], 255);
                 continue;
             }
             uint32_t sum = 0;
@@ -185,7 +185,7 @@ static void draw_disc(prom_views *views, float radius_px, uint8_t grey)
         for (uint32_t y = 0; y < PROM_VIEW_PX; y++)
             for (uint32_t x = 0; x < PROM_VIEW_PX; x++) {
                 float dx = (float)x - 63.5f, dy = (float)y - 63.5f;
-                size_t i = prom_view_start(d) + (size_t)y * PROM_ATLAS_PX + x;
+                size_t i = prom_view_start(d) + (size_t)y * PROM_ATLAS_WIDTH + x;
                 bool in = dx * dx + dy * dy < radius_px * radius_px;
                 uint8_t pixel[4] = {grey, grey, grey, 255};
                 memset(views->rgba[i], 0, 4);
@@ -220,9 +220,9 @@ static void accuracy_is_one_for_equal_and_falls_with_difference(void **state)
         double share = 40.0 * 40.0 / (64.0 * 64.0);
         assert_true(fabs(coverage[d] / 65535.0 - share) < 0.01);
         for (uint32_t s = 0; s < PROM_SIZES; s++) {
-            assert_int_equal(result[0].accuracy[d][s], 255);
-            assert_true(result[1].accuracy[d][s] < 255);
-            assert_true(result[2].accuracy[d][s] < result[1].accuracy[d][s]);
+            assert_int_equal(result[0].accuracy.bins[d][s], 255);
+            assert_true(result[1].accuracy.bins[d][s] < 255);
+            assert_true(result[2].accuracy.bins[d][s] < result[1].accuracy.bins[d][s]);
         }
         assert_int_equal(result[0].gaps[d], 0);
         assert_true(result[2].gaps[d] > 100);

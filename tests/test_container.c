@@ -156,10 +156,10 @@ static void same_input_same_hash(void **state)
     uint64_t first = content_hash(path);
     assert_ok(fixture_write(&f, path, 99, &error), &error);
     assert_true(first == content_hash(path)); // durations do not count
-    f.model.accuracy[2][17][3] ^= 1;
+    f.model.accuracy[2].bins[17][3] ^= 1;
     assert_ok(fixture_write(&f, path, 1, &error), &error);
     assert_true(first != content_hash(path));
-    f.model.accuracy[2][17][3] ^= 1;
+    f.model.accuracy[2].bins[17][3] ^= 1;
     f.meshes[1].vertices[4].position[1] += 0.001f;
     assert_ok(fixture_write(&f, path, 1, &error), &error);
     assert_true(first != content_hash(path));

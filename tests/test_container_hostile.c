@@ -129,7 +129,7 @@ static void unknown_kind_is_left_out(void **state)
     assert_int_equal(m.prototypes[1].first_rep, 2);
     for (uint32_t r = 1; r < m.rep_count; r++) {
         assert_memory_equal(&m.reps[r], &f.model.reps[r + 1], sizeof m.reps[r]);
-        assert_memory_equal(m.accuracy[r], f.model.accuracy[r + 1], sizeof m.accuracy[r]);
+        assert_memory_equal(&m.accuracy[r], &f.model.accuracy[r + 1], sizeof m.accuracy[r]);
     }
     prom_model_finish(&m);
     prom_container_close(c);

@@ -185,7 +185,8 @@ static void artists_levels_are_levels_for_the_others(void **state)
         // Each pays, and at the same rate.
         b.cost.edge_ms = 0.0;
         for (uint32_t r = 0; r < REPS; r++) {
-            memset(b.model.accuracy[r], (int)(55 + b.model.reps[r].triangles / 5), 180);
+            memset(&b.model.accuracy[r], (int)(55 + b.model.reps[r].triangles / 5),
+                   sizeof *b.model.accuracy);
             b.model.reps[r].shading = PROM_SHADE_PLAIN;
             b.model.reps[r].draws = 1;
         }

@@ -272,7 +272,7 @@ static void coloured_pictures_follow_the_recipe(void **state)
 static void extreme_sizes_work(void **state)
 {
     (void)state;
-    const double ppds[] = {PROM_FLIP_PPD_MIN, PROM_FLIP_PPD, PROM_FLIP_PPD_MAX};
+    const double ppds[] = {PROM_PPD_MIN, PROM_FLIP_PPD, PROM_PPD_MAX};
     const uint8_t black[] = {0, 0, 0}, white[] = {255, 255, 255};
     float map[1];
     for (int i = 0; i < 3; i++) {

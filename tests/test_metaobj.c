@@ -136,7 +136,66 @@ static void direction_bins(void **state)
     }
     assert_true(prom_bin_of_direction((float[]){0, -1, 0}) < PROM_DIRS);
     assert_float_equal(prom_size_of_bin(0), PROM_SIZE_MIN_PX, 0);
-    assert_float_equal(prom_size_of_bin(PROM_SIZES - 1), PROM_SIZE_MAX_PX, 0);
+    assert_float_equal(prom_size_of_bin(PROM_SIZES - 1), PROM_SIZE_MAX_PX, 1e-4f);
+    for (uint32_t s = 0; s < PROM_SIZES + PROM_SIZES_LARGE; s++)
+        assert_float_equal(prom_bin_of_size(prom_size_of_bin(s)), s, 1e-5f);
+}
+
+// Directions next to each other have nearly the same weights for all directions.
+static void directions_are_interpolated_without_seams(void **state)
+{
+    (void)state;
+    uint32_t seed = 11;
+    for (int k = 0; k < 20000; k++) {
+        float d[3], near[3], weights[PROM_DIRS] = {0}, axes[PROM_DIRS_LARGE] = {0};
+        random_direction(&seed, d);
+        for (int a = 0; a < 3; a++) near[a] = d[a] + ((k >> a) % 2 ? 2e-4f : -2e-4f);
+        if (k % 4 == 0) near[1] = -d[1] * 1e-5f, d[1] *= 1e-5f; // across the fold
+        for (int side = 0; side < 2; side++) {
+            float uv[2], sum = 0, sign = side ? -1 : 1;
+            prom_direction_weights around;
+            prom_axis_weights axis;
+            prom_octahedral_encode(side ? near : d, uv);
+            prom_directions_around(uv, &around);
+            prom_axes_around(uv, &axis);
+            for (int i = 0; i < 4; i++) {
+                assert_true(around.dir[i] < PROM_DIRS && around.weight[i] >= 0);
+                weights[around.dir[i]] += sign * around.weight[i];
+                sum += around.weight[i];
+            }
+            assert_float_equal(sum, 1, 1e-5f);
+            for (int i = 0; i < 3; i++) {
+                assert_true(axis.dir[i] < PROM_DIRS_LARGE && axis.weight[i] >= -1e-6f);
+                axes[axis.dir[i]] += sign * axis.weight[i];
+            }
+        }
+        for (uint32_t i = 0; i < PROM_DIRS; i++) assert_float_equal(weights[i], 0, 2e-2f);
+        for (uint32_t i = 0; i < PROM_DIRS_LARGE; i++) assert_float_equal(axes[i], 0, 2e-2f);
+    }
+}
+
+static void coarse_directions_surround_fine_ones(void **state)
+{
+    (void)state;
+    uint32_t around[4], edges = 0, cells = 0;
+    for (uint32_t bin = 0; bin < PROM_DIRS; bin++) {
+        uint32_t count = prom_coarse_directions_around(bin, around);
+        if (bin < PROM_DIRS_COARSE) {
+            assert_int_equal(count, 0);
+            continue;
+        }
+        float d[3], c[3];
+        prom_direction_of_bin(bin, d);
+        for (uint32_t i = 0; i < count; i++) {
+            assert_true(around[i] < PROM_DIRS_COARSE);
+            prom_direction_of_bin(around[i], c);
+            assert_true(dot(d, c) > 0.7f);
+        }
+        edges += count == 2;
+        cells += count == 4;
+    }
+    assert_int_equal(edges + cells, PROM_DIRS - PROM_DIRS_COARSE);
+    assert_int_equal(cells, PROM_DIR_GRID * PROM_DIR_GRID / 4);
 }
 
 static void srgb_curve(void **state)
@@ -316,12 +375,20 @@ static void kind_names(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(boxes),           cmocka_unit_test(bases),
-        cmocka_unit_test(placements),      cmocka_unit_test(octahedral_map),
-        cmocka_unit_test(direction_bins),  cmocka_unit_test(srgb_curve),
-        cmocka_unit_test(box_mesh),        cmocka_unit_test(mesh_check),
-        cmocka_unit_test(mesh_hash),       cmocka_unit_test(packed_normals),
-        cmocka_unit_test(camera_looks_at), cmocka_unit_test(kind_names),
+        cmocka_unit_test(boxes),
+        cmocka_unit_test(bases),
+        cmocka_unit_test(placements),
+        cmocka_unit_test(octahedral_map),
+        cmocka_unit_test(direction_bins),
+        cmocka_unit_test(directions_are_interpolated_without_seams),
+        cmocka_unit_test(coarse_directions_surround_fine_ones),
+        cmocka_unit_test(srgb_curve),
+        cmocka_unit_test(box_mesh),
+        cmocka_unit_test(mesh_check),
+        cmocka_unit_test(mesh_hash),
+        cmocka_unit_test(packed_normals),
+        cmocka_unit_test(camera_looks_at),
+        cmocka_unit_test(kind_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

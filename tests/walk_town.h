@@ -61,6 +61,9 @@ static inline void make_model(prom_model *m, const prom_mesh meshes[3])
     TABLE(center, m->node_count);
     TABLE(half, m->node_count);
     TABLE(radius, m->node_count);
+    TABLE(weight, m->node_count);
+    m->measured.ppd = PROM_PPD_MIN;
+    strcpy(m->measured.metric, "flip");
     m->prototype_count = 4;
     m->mesh_count = m->rep_count = 3;
     m->share_count = LEAVES;

@@ -70,6 +70,8 @@ static float look_at(prom_eval *eval, uint32_t node, bool parent_inside)
     n->distance = a.distance;
     n->nearest = a.nearest;
     n->size_px = a.size_px;
+    n->uv[0] = a.uv[0];
+    n->uv[1] = a.uv[1];
     n->dir = (uint8_t)a.dir;
     n->near_case = a.near_case;
     float in_view;
@@ -103,7 +105,9 @@ static void add_options(prom_eval *eval, uint32_t node)
     n->first_option = eval->option_count;
     n->option_count = 0;
     if (n->near_case && m->child_count[node]) return;
-    float size = accuracy_size(eval, node);
+    float size = accuracy_size(eval, node), table_px = eval->selection->table_px;
+    prom_accuracy_place place;
+    prom_accuracy_place_init(&place, n->uv, table_px > 0.0f ? size * table_px : size);
     for (uint32_t i = 0; i < p->rep_count; i++) {
         uint32_t rep = p->first_rep + i;
         const prom_representation *r = &m->reps[rep];
@@ -115,7 +119,7 @@ static void add_options(prom_eval *eval, uint32_t node)
         if (too_large && !any_size) continue;
         eval->options[eval->option_count++] = (prom_option){
             .rep = rep,
-            .benefit = n->px * prom_accuracy(m, rep, n->dir, size, p->radius),
+            .benefit = n->px * prom_accuracy(m, rep, &place, p->radius),
         };
     }
     n->option_count = eval->option_count - n->first_option;

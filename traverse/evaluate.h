@@ -25,6 +25,7 @@ typedef struct prom_eval_node {
     float px;           // visible pixels
     float footprint_px; // pixels, if nothing outside its ancestor hid it
     float distance, nearest, size_px;
+    float uv[2]; // direction to the eye, see prom_appearance
     uint8_t dir;
     bool culled; // nothing below it is in the frustum
     bool inside; // wholly in the frustum: what is below needs no test

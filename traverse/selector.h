@@ -14,7 +14,10 @@ typedef struct prom_selection {
     const prom_view *view;
     const prom_cost_model *cost;
     double budget_ms; // for prediction (fixed part included): what the cut may be predicted at
-    float distance_scale;              // for `distance`: factor on its ranges; 0 means 1
+    float distance_scale; // for `distance`: factor on its ranges; 0 means 1
+    // Pixels of the accuracy tables for each of this view: the ratio of their pixels per
+    // degree. 0 means 1.
+    float table_px;
     const prom_visibility *visibility; // begun for this view; NULL: nothing hides anything
 } prom_selection;
 

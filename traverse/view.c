@@ -152,13 +152,15 @@ static float near_reach(const prom_view *view)
     return view->camera.z_near * sqrtf(1.0f + w * w + h * h);
 }
 
-static uint32_t direction_bin(const prom_model *model, uint32_t node, const float center[3])
+static void place_direction(const prom_model *model, uint32_t node, const float center[3],
+                            prom_appearance *appearance)
 {
     const float to_eye[3] = {-center[0], -center[1], -center[2]};
     float local[3];
     prom_basis_apply_transposed(model->placement[node].basis, to_eye, local);
     if (!(fabsf(local[0]) + fabsf(local[1]) + fabsf(local[2]) > 0.0f)) local[1] = 1.0f;
-    return prom_bin_of_direction(local);
+    prom_octahedral_encode(local, appearance->uv);
+    appearance->dir = prom_bin_of_place(appearance->uv);
 }
 
 void prom_view_appearance_culled(const prom_view *view, const prom_model *model, uint32_t node,
@@ -177,7 +179,7 @@ void prom_view_appearance_culled(const prom_view *view, const prom_model *model,
     appearance->near_case = appearance->nearest <= near_reach(view);
     appearance->size_px = 2.0f * model->radius[node] * view->f_px /
                           fmaxf(appearance->distance, view->camera.z_near);
-    appearance->dir = direction_bin(model, node, center);
+    place_direction(model, node, center, appearance);
     appearance->in_view = 1.0f;
     appearance->overlap_px = prom_view_screen_px(view);
     if (cull != PROM_INSIDE ||

@@ -28,7 +28,8 @@ typedef struct prom_appearance {
     float size_px;    // projected diameter at that distance: 2 * radius * f_px / distance
     float in_view;    // part of its screen rectangle inside the viewport, (0,1]
     float overlap_px; // pixels of the viewport that its screen rectangle covers
-    uint32_t dir;     // direction bin, in the node's own frame
+    float uv[2];      // direction to the eye in the node's own frame, on the octahedral map
+    uint32_t dir;     // its direction bin
     bool near_case;   // holds the eye or crosses the near plane: only meshes, clusters open
 } prom_appearance;
 void prom_view_appearance(const prom_view *view, const prom_model *model, uint32_t node,

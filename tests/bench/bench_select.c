@@ -2,7 +2,7 @@
 // Times the selectors on a large random tree and says how far their cuts are from the bound;
 // times the edge-blur metric. Usage: bench_select [LEAVES] [FRAMES]
 #include "../random_model.h"
-#include "benefit/metric.h"
+#include "benefit/edge_blur.h"
 #include "metaobj/base/clock.h"
 #include "traverse/evaluate.h"
 

@@ -10,7 +10,7 @@
 // quarter of the pixel, about what FLIP says of it, and a contrast of 0.4, an object that is
 // missing, costs all of it. EDGE_GAIN: by taste; lost texture of contrast 0.3 costs about a
 // third.
-#include "benefit/metric.h"
+#include "benefit/edge_blur.h"
 
 #include "metaobj/base/math.h"
 
