@@ -20,32 +20,40 @@ static float between(float low, float high, float t)
     return low + t * (high - low);
 }
 
+// The mean of values with weights that sum to 1; exact where they are equal.
+static float mean(const float *values, const float *weights, int count)
+{
+    float sum = values[0];
+    for (int k = 1; k < count; k++) sum += weights[k] * (values[k] - values[0]);
+    return sum;
+}
+
 // Up to the largest size of all directions.
 static float far_accuracy(const prom_accuracy_row *row, const prom_accuracy_place *place)
 {
-    float sum = 0.0f;
+    float values[4];
     for (int k = 0; k < 4; k++) {
         const uint8_t *a = &row->bins[place->around.dir[k]][place->size];
-        sum += place->around.weight[k] * between((float)a[0], (float)a[1], place->t);
+        values[k] = between((float)a[0], (float)a[1], place->t);
     }
-    return sum / 255.0f;
+    return mean(values, place->around.weight, 4) / 255.0f;
 }
 
 // What is left along the axes of the accuracy at PROM_SIZE_MAX_PX.
 static float large_ratio(const prom_accuracy_row *row, const prom_accuracy_place *place)
 {
-    float sums[1 + PROM_SIZES_LARGE] = {0.0f};
-    for (int k = 0; k < 3; k++) {
-        uint32_t dir = place->axes.dir[k];
-        float weight = place->axes.weight[k];
-        sums[0] += weight * (float)row->bins[dir][PROM_SIZES - 1];
-        for (int s = 0; s < PROM_SIZES_LARGE; s++)
-            sums[1 + s] += weight * (float)row->large[dir][s];
+    float means[1 + PROM_SIZES_LARGE], values[3];
+    for (int s = 0; s <= PROM_SIZES_LARGE; s++) {
+        for (int k = 0; k < 3; k++) {
+            uint32_t dir = place->axes.dir[k];
+            values[k] = (float)(s ? row->large[dir][s - 1] : row->bins[dir][PROM_SIZES - 1]);
+        }
+        means[s] = mean(values, place->axes.weight, 3);
     }
-    if (!(sums[0] > 0.0f)) return 1.0f; // nothing to see along the axes
+    if (!(means[0] > 0.0f)) return 1.0f; // nothing to see along the axes
     float bin = fminf(prom_bin_of_size(place->size_px) - (PROM_SIZES - 1), PROM_SIZES_LARGE);
     int s = bin < PROM_SIZES_LARGE - 1 ? (int)bin : PROM_SIZES_LARGE - 1;
-    return fminf(between(sums[s], sums[s + 1], bin - (float)s) / sums[0], 1.0f);
+    return fminf(between(means[s], means[s + 1], bin - (float)s) / means[0], 1.0f);
 }
 
 static float near_ratio(const prom_representation *rep, float size_px, float radius)
