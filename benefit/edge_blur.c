@@ -12,6 +12,9 @@
 // third.
 #include "benefit/edge_blur.h"
 
+#include "benefit/grey.h"
+#include "benefit/metric_private.h"
+#include "metaobj/base/alloc.h"
 #include "metaobj/base/math.h"
 
 #include <assert.h>
@@ -148,3 +151,59 @@ void prom_edge_blur(const float *a, const float *b, uint32_t width, uint32_t hei
     prom_edge_blur_features(b, width, height, features_b, rest);
     prom_edge_blur_error(features_a, features_b, width, height, error);
 }
+
+// ---- as a metric
+
+typedef struct edge_blur {
+    float *grey, *scratch;
+} edge_blur;
+
+static void *create(double ppd, uint32_t max_side, size_t max_pixels, unsigned threads)
+{
+    (void)ppd;
+    (void)threads;
+    edge_blur *state = prom_alloc(1, sizeof *state);
+    state->grey = prom_alloc(max_pixels, sizeof(float));
+    state->scratch = prom_alloc(max_pixels + 2 * row_floats(max_side), sizeof(float));
+    return state;
+}
+
+static void destroy(void *user)
+{
+    edge_blur *state = user;
+    prom_free(state->grey);
+    prom_free(state->scratch);
+    prom_free(state);
+}
+
+static uint32_t radius(const void *user)
+{
+    (void)user;
+    return PROM_EDGE_BLUR_RADIUS;
+}
+
+static void features(void *user, const prom_picture *picture, float *planes)
+{
+    edge_blur *state = user;
+    for (uint32_t y = 0; y < picture->height; y++)
+        prom_grey_row(picture, y, state->grey + (size_t)y * picture->width);
+    prom_edge_blur_features(state->grey, picture->width, picture->height, planes,
+                            state->scratch);
+}
+
+static void compare(void *user, const float *features_a, const float *features_b,
+                    uint32_t width, uint32_t height, float *map)
+{
+    (void)user;
+    prom_edge_blur_error(features_a, features_b, width, height, map);
+}
+
+const prom_metric_kind prom_metric_edge_blur = {
+    .class = {.name = "edge-blur", .summary = "blurred edges and greys, cheap to compare"},
+    .planes = 2,
+    .create = create,
+    .destroy = destroy,
+    .radius = radius,
+    .features = features,
+    .compare = compare,
+};
