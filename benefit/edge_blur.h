@@ -8,16 +8,13 @@
 // Radius in pixels up to which one pixel influences the edge-blur error of another.
 #define PROM_EDGE_BLUR_RADIUS 3
 
-// The grey that metrics compare: linear luminance (Rec. 709), encoded as sRGB. rgba: `pixels`
-// of 4 encoded bytes, alpha is not looked at; grey: as many floats in [0,1].
+// The grey that metrics compare: luma (grey.h). rgba: `pixels` of 4 encoded bytes, alpha is not
+// looked at; grey: as many floats in [0,1].
 void prom_metric_grey(const uint8_t *rgba, size_t pixels, float *grey);
 
-// `edge-blur`: both pictures as greys (see above), edge filter (Sobel magnitude), Gaussian
-// blur, per-pixel absolute difference; to which we add the difference of the blurred greys
-// themselves, since edges alone are blind to flat changes (constants ours, documented in the
-// source). Borders replicate. a, b: width x height greys in [0,1]; error: per pixel in [0,1],
-// may not alias the inputs; scratch: prom_edge_blur_scratch(width, height) floats. Symmetric; 0
-// for equal pictures.
+// The error of two pictures (formula in the source). a, b: width x height greys; error: per
+// pixel in [0,1], may not alias the inputs; scratch: prom_edge_blur_scratch(width, height)
+// floats.
 size_t prom_edge_blur_scratch(uint32_t width, uint32_t height);
 void prom_edge_blur(const float *a, const float *b, uint32_t width, uint32_t height,
                     float *error, float *scratch);

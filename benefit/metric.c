@@ -15,7 +15,8 @@ struct prom_metric {
 };
 
 // In the order of the help text.
-static const prom_metric_kind *const kinds[] = {&prom_metric_edge_blur};
+static const prom_metric_kind *const kinds[] = {&prom_metric_ssim, &prom_metric_rmse,
+                                                &prom_metric_sobel, &prom_metric_edge_blur};
 
 size_t prom_metric_count(void)
 {
@@ -93,4 +94,12 @@ void prom_metric_compare(prom_metric *metric, const float *features_a, const flo
 {
     assert(fits(metric, width, height));
     metric->kind->compare(metric->state, features_a, features_b, width, height, map);
+}
+
+const void *prom_picture_row(const prom_picture *picture, uint32_t y)
+{
+    const size_t value_bytes = picture->floats ? sizeof(float) : 1;
+    const size_t close = (size_t)picture->width * picture->channels * value_bytes;
+    return (const uint8_t *)picture->pixels +
+           y * (picture->row_bytes ? picture->row_bytes : close);
 }

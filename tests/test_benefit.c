@@ -1,7 +1,6 @@
 // LINK: prom_benefit prom_metaobj
-// Accuracy, footprints and the edge-blur metric.
+// Accuracy and footprints.
 #include "benefit/accuracy.h"
-#include "benefit/edge_blur.h"
 #include "random_model.h"
 
 #include <setjmp.h>
@@ -175,139 +174,6 @@ static void split_keeps_the_pixels_of_a_cluster(void **state)
     }
 }
 
-// ---- edge-blur
-
-enum { W = 53, H = 41, MAX_PIXELS = W * H };
-
-static void random_picture(uint64_t *seed, float *grey, uint32_t w, uint32_t h)
-{
-    for (uint32_t y = 0; y < h; y++)
-        for (uint32_t x = 0; x < w; x++)
-            grey[y * w + x] = random_unit(seed) * 0.5f + ((x / 7 + y / 5) % 2 ? 0.5f : 0.0f);
-}
-
-static double mean_error(const float *a, const float *b, uint32_t w, uint32_t h)
-{
-    static float error[MAX_PIXELS];
-    float *scratch = prom_alloc(prom_edge_blur_scratch(w, h), sizeof *scratch);
-    prom_edge_blur(a, b, w, h, error, scratch);
-    prom_free(scratch);
-    double sum = 0.0;
-    for (uint32_t i = 0; i < w * h; i++) {
-        assert_true(error[i] >= 0.0f && error[i] <= 1.0f);
-        sum += error[i];
-    }
-    return sum / (w * h);
-}
-
-static void box_blur(const float *in, float *out, uint32_t w, uint32_t h)
-{
-    for (int y = 0; y < (int)h; y++) {
-        for (int x = 0; x < (int)w; x++) {
-            float sum = 0.0f;
-            for (int dy = -1; dy <= 1; dy++)
-                for (int dx = -1; dx <= 1; dx++) {
-                    int yy = y + dy < 0 ? 0 : y + dy >= (int)h ? (int)h - 1 : y + dy;
-                    int xx = x + dx < 0 ? 0 : x + dx >= (int)w ? (int)w - 1 : x + dx;
-                    sum += in[yy * (int)w + xx];
-                }
-            out[y * (int)w + x] = sum / 9.0f;
-        }
-    }
-}
-
-// Greys stay what they are, brightness is that of the light and not of the code, alpha is not
-// looked at.
-static void grey_is_encoded_luminance(void **state)
-{
-    (void)state;
-    uint8_t rgba[259][4];
-    float grey[259];
-    for (int i = 0; i < 256; i++)
-        for (int k = 0; k < 4; k++) rgba[i][k] = (uint8_t)(k < 3 ? i : 255 - i);
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 4; k++) rgba[256 + i][k] = i == k ? 255 : 0;
-    prom_metric_grey(rgba[0], 259, grey);
-    for (int i = 0; i < 256; i++) assert_float_equal(grey[i], (float)i / 255.0f, 1e-5f);
-    float sum = 0.0f;
-    for (int i = 0; i < 3; i++) sum += prom_srgb_to_linear(grey[256 + i]);
-    assert_float_equal(sum, 1.0f, 1e-5f);
-    assert_true(grey[257] > grey[256] && grey[256] > grey[258]); // green, red, blue
-}
-
-static void edge_blur_is_a_difference(void **state)
-{
-    (void)state;
-    static float a[MAX_PIXELS], b[MAX_PIXELS];
-    const uint32_t sizes[][2] = {{W, H}, {1, 1}, {1, 9}, {9, 1}, {2, 2}, {3, 5}, {17, 4}};
-    uint64_t seed = 8;
-    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
-        uint32_t w = sizes[i][0], h = sizes[i][1];
-        random_picture(&seed, a, w, h);
-        random_picture(&seed, b, w, h);
-        assert_true(mean_error(a, a, w, h) == 0.0);
-        assert_true(mean_error(a, b, w, h) == mean_error(b, a, w, h));
-        assert_true(mean_error(a, b, w, h) > 0.0);
-    }
-}
-
-static void edge_blur_grows_with_blur(void **state)
-{
-    (void)state;
-    static float a[MAX_PIXELS], blurred[MAX_PIXELS], next[MAX_PIXELS];
-    uint64_t seed = 9;
-    random_picture(&seed, a, W, H);
-    memcpy(blurred, a, sizeof blurred);
-    double last = 0.0;
-    for (int i = 0; i < 4; i++) {
-        box_blur(blurred, next, W, H);
-        memcpy(blurred, next, sizeof blurred);
-        double error = mean_error(a, blurred, W, H);
-        assert_true(error > last);
-        last = error;
-    }
-}
-
-static void edge_blur_weighs_what_matters(void **state)
-{
-    (void)state;
-    static float empty[MAX_PIXELS], object[MAX_PIXELS], shaded[MAX_PIXELS];
-    uint32_t covered = 0;
-    for (uint32_t y = 0; y < H; y++) {
-        for (uint32_t x = 0; x < W; x++) {
-            bool in = x >= 15 && x < 38 && y >= 10 && y < 30;
-            covered += in;
-            empty[y * W + x] = 0.7f;
-            object[y * W + x] = in ? 0.25f : 0.7f;
-            shaded[y * W + x] = in ? 0.27f : 0.7f;
-        }
-    }
-    double missing = mean_error(object, empty, W, H) * MAX_PIXELS / covered;
-    double shade = mean_error(object, shaded, W, H) * MAX_PIXELS / covered;
-    assert_true(missing > 0.95);
-    assert_true(shade > 0.01 && shade < 0.1);
-}
-
-static void edge_blur_reaches_as_far_as_it_says(void **state)
-{
-    (void)state;
-    static float a[MAX_PIXELS], b[MAX_PIXELS], error[MAX_PIXELS];
-    memset(a, 0, sizeof a);
-    memset(b, 0, sizeof b);
-    b[20 * W + 25] = 1.0f;
-    float *scratch = prom_alloc(prom_edge_blur_scratch(W, H), sizeof *scratch);
-    prom_edge_blur(a, b, W, H, error, scratch);
-    prom_free(scratch);
-    int reach = 0;
-    for (int y = 0; y < H; y++)
-        for (int x = 0; x < W; x++)
-            if (error[y * W + x] > 0.0f) {
-                int far = abs(x - 25) > abs(y - 20) ? abs(x - 25) : abs(y - 20);
-                if (far > reach) reach = far;
-            }
-    assert_int_equal(reach, PROM_EDGE_BLUR_RADIUS);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -317,11 +183,6 @@ int main(void)
         cmocka_unit_test(near_fit_recovers_its_parameter),
         cmocka_unit_test(footprint_of_a_full_disc),
         cmocka_unit_test(split_keeps_the_pixels_of_a_cluster),
-        cmocka_unit_test(grey_is_encoded_luminance),
-        cmocka_unit_test(edge_blur_is_a_difference),
-        cmocka_unit_test(edge_blur_grows_with_blur),
-        cmocka_unit_test(edge_blur_weighs_what_matters),
-        cmocka_unit_test(edge_blur_reaches_as_far_as_it_says),
     };
     return cmocka_run_group_tests_name("benefit", tests, NULL, NULL);
 }
