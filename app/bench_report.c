@@ -103,7 +103,7 @@ static void set_found(json_t *run, const prom_run_facts *f, const prom_run_stati
         r->infeasible_frames ? prom_json_number(r->least_budget_ms) : json_null());
     set(run, "holes", holes_json(t));
     set(run, "accuracy", accuracy_json(t));
-    set(run, "quality", quality_json(t, r->ppd));
+    set(run, "quality", quality_json(t, prom_session_ppd(f->session)));
     set(run, "start_s", prom_json_number(f->session->start_s));
     set(run, "calibration_s", prom_json_number(f->session->calibration_s));
     set(run, "memory_mb", pair_json("start", r->memory_start_mb, "end", r->memory_end_mb));
@@ -199,7 +199,7 @@ void prom_bench_print(const prom_run_facts *facts)
                100 * t.predicted_accuracy);
     if (t.quality_frames) {
         printf("quality    FLIP mean %.4f, p95 %.4f at %.2f pixels a degree in %u frames\n",
-               t.flip.mean, t.flip.p95, r->ppd, t.quality_frames);
+               t.flip.mean, t.flip.p95, prom_session_ppd(facts->session), t.quality_frames);
         printf("visible    %.2f %% of the pixels lost; hidden: %.1f %% of the cost, %.1f %% of "
                "the nodes\n",
                100 * t.loss_share, 100 * t.hidden_cost, 100 * t.hidden_nodes);

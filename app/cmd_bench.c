@@ -26,7 +26,6 @@ enum {
     KEY_HOLES,
     KEY_ACCURACY,
     KEY_QUALITY,
-    KEY_PPD,
 };
 
 static const struct argp_option options[] = {
@@ -51,10 +50,6 @@ static const struct argp_option options[] = {
      "On N frames also draw full detail and report how different the picture looks (mean "
      "FLIP), the share of visible pixels lost, and the shares of cost and nodes that show no "
      "pixel (20)",
-     1},
-    {"ppd", KEY_PPD, "X", 0,
-     "Pixels per degree that FLIP is told (those of the picture filling a screen 0.7 m wide, "
-     "0.7 m away: 22.34 for 1280 pixels)",
      1},
     {0},
 };
@@ -98,9 +93,6 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case KEY_QUALITY:
         o->loop.quality_frames =
             (uint32_t)prom_option_whole(state, "--quality-frames", text, 0, 100000);
-        break;
-    case KEY_PPD:
-        o->loop.ppd = prom_option_number(state, "--ppd", text, PROM_PPD_MIN, PROM_PPD_MAX);
         break;
     default:
         return prom_option_model(key, text, state, &o->model);

@@ -4,7 +4,6 @@
 #include "metaobj/base/clock.h"
 #include "metaobj/base/log.h"
 
-#include <math.h>
 #include <stdio.h>
 
 typedef struct loop {
@@ -152,17 +151,13 @@ static prom_status walk(loop *l, prom_loop_result *result, prom_error *error)
     return status;
 }
 
-static double full_screen_ppd(uint32_t width)
-{
-    return fmax(PROM_FLIP_PPD * width / PROM_FLIP_SCREEN_PX, PROM_PPD_MIN);
-}
-
-static prom_status open_comparison(loop *l, double ppd, prom_error *error)
+static prom_status open_comparison(loop *l, prom_error *error)
 {
     unsigned wanted = 0;
     for (uint32_t i = 0; i < l->options->frames; i++) wanted |= wanted_of(l->options, i);
     if (!wanted) return PROM_OK;
-    return prom_comparison_init(&l->comparison, l->step.session, wanted, ppd, error);
+    prom_session *s = l->step.session;
+    return prom_comparison_init(&l->comparison, s, wanted, prom_session_ppd(s), error);
 }
 
 prom_status prom_frame_loop_run(prom_session *session, const prom_loop_options *options,
@@ -173,8 +168,7 @@ prom_status prom_frame_loop_run(prom_session *session, const prom_loop_options *
         prom_frame_step_init(&l.step, session, options->selector, options->budget_ms,
                              options->distance_scale, error);
     if (status) return status;
-    result->ppd = options->ppd > 0 ? options->ppd : full_screen_ppd(session->camera.width);
-    status = open_comparison(&l, result->ppd, error);
+    status = open_comparison(&l, error);
     if (!status) status = walk(&l, result, error);
     prom_comparison_finish(&l.comparison);
     prom_frame_step_finish(&l.step);

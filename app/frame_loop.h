@@ -15,7 +15,6 @@ typedef struct prom_loop_options {
     bool keep_colours; // and each of them again in false colours
     // Frames to compare with full detail, evenly spaced; 0: none.
     uint32_t check_holes, check_accuracy, quality_frames;
-    double ppd; // pixels per degree, for quality; 0: of the width of a full screen
 } prom_loop_options;
 
 typedef struct prom_loop_result {
@@ -23,7 +22,6 @@ typedef struct prom_loop_result {
     uint32_t infeasible_frames;
     double least_budget_ms; // with which no frame would have been infeasible
     double memory_start_mb, memory_end_mb;
-    double ppd; // that quality was found with
 } prom_loop_result;
 
 prom_status prom_frame_loop_run(prom_session *session, const prom_loop_options *options,

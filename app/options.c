@@ -1,6 +1,7 @@
 #include "app/options.h"
 
 #include "metaobj/base/log.h"
+#include "metaobj/model.h"
 #include "traverse/selector.h"
 
 #include <errno.h>
@@ -136,6 +137,7 @@ enum {
     KEY_DISTANCE_SCALE,
     KEY_FOV,
     KEY_VISIBILITY,
+    KEY_PPD,
 };
 
 static const struct argp_option view_options[] = {
@@ -151,6 +153,10 @@ static const struct argp_option view_options[] = {
     {"visibility", KEY_VISIBILITY, "none|frame|cells|both", 0,
      "From what the selector knows what is hidden: the pixels counted in earlier frames, the "
      "model's view cells, or both (both)",
+     0},
+    {"ppd", KEY_PPD, "X", 0,
+     "Pixels per degree of the viewer's angle, on which it depends how much of an error shows "
+     "(those of the picture filling a screen 0.7 m wide, 0.7 m away: 22.34 for 1280 pixels)",
      0},
     {"profile", KEY_PROFILE, "FILE", 0,
      "Cost profile from `calibrate`; the default is the device's own, made when missing", 0},
@@ -208,6 +214,9 @@ static error_t parse_view(int key, char *text, struct argp_state *state)
         break;
     case KEY_VISIBILITY:
         o->visibility = known_visibility(state, text);
+        break;
+    case KEY_PPD:
+        o->ppd = prom_option_number(state, "--ppd", text, PROM_PPD_MIN, PROM_PPD_MAX);
         break;
     case KEY_FOV:
         o->fov_degrees = prom_option_number(state, "--fov-deg", text, 1, 170);

@@ -53,6 +53,7 @@ typedef struct prom_view_options {
     double fov_degrees; // vertical
     prom_visibility_mode visibility;
     uint32_t size_px[2];
+    double ppd; // pixels per degree; 0: of the picture filling a screen
 } prom_view_options;
 
 // The path's file; NULL for an automatic one.

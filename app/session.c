@@ -1,6 +1,7 @@
 #include "app/session.h"
 
 #include "app/calibration.h"
+#include "benefit/flip.h"
 #include "builder/image_io.h"
 #include "metaobj/base/clock.h"
 #include "metaobj/base/log.h"
@@ -81,6 +82,7 @@ static prom_status open_all(prom_session *s, const prom_session_device *device,
                             bool with_path, uint32_t path_frames, prom_error *error)
 {
     uint32_t size_px[2] = {options->size_px[0], options->size_px[1]};
+    s->ppd = options->ppd;
     double start = prom_clock_ms();
     // What does not choose by cost and benefit has no use for it.
     if (prom_selector_class_named(options->selector)->uses_cost)
@@ -146,6 +148,12 @@ prom_status prom_session_resize(prom_session *session, const uint32_t size_px[2]
     return PROM_OK;
 }
 
+double prom_session_ppd(const prom_session *session)
+{
+    if (session->ppd > 0) return session->ppd;
+    return fmax(PROM_FLIP_PPD * session->camera.width / PROM_FLIP_SCREEN_PX, PROM_PPD_MIN);
+}
+
 void prom_session_select(const prom_session *session, prom_selector *selector,
                          const prom_visibility *visibility, const prom_camera *camera,
                          double budget_ms, double distance_scale, prom_cut *cut)
@@ -157,6 +165,7 @@ void prom_session_select(const prom_session *session, prom_selector *selector,
         .cost = &session->cost,
         .budget_ms = budget_ms,
         .distance_scale = (float)distance_scale,
+        .table_px = (float)(session->model.measured.ppd / prom_session_ppd(session)),
         .visibility = visibility,
     };
     prom_selector_run(selector, &selection, cut);

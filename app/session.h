@@ -25,6 +25,7 @@ typedef struct prom_session {
     prom_cost_model cost; // {0} when nothing is known and neither budget nor selector needs it
     prom_path path;
     prom_camera camera;   // all but the pose is set
+    double ppd;           // as given; see prom_session_ppd
     double start_s;       // opening, loading and warming, without calibration
     double calibration_s; // 0 when a profile was at hand
 } prom_session;
@@ -49,6 +50,9 @@ void prom_session_close(prom_session *session); // {0} is allowed
 // Gives the pictures another size. On failure the old one stays.
 prom_status prom_session_resize(prom_session *session, const uint32_t size_px[2],
                                 prom_error *error);
+// Pixels per degree of the pictures: as given, or those of one that fills the screen 0.7 m wide
+// and 0.7 m away that FLIP's values are usually given for.
+double prom_session_ppd(const prom_session *session);
 // Selects a cut for a view. visibility: NULL, or begun for it.
 void prom_session_select(const prom_session *session, prom_selector *selector,
                          const prom_visibility *visibility, const prom_camera *camera,

@@ -113,6 +113,8 @@ static const char *const wrong[][2] = {
     {"bench a.prom --frames 0", "--frames"},
     {"bench a.prom --quality-frames -1", "--quality-frames"},
     {"bench a.prom --ppd 0.5", "--ppd"},
+    {"shot a.prom -o b.png --ppd 0", "--ppd"},
+    {"walk a.prom --ppd far", "--ppd"},
     {"bench a.prom --visibility all", "cells or both"},
     {"walk", "missing"},
     {"walk a.prom b.prom", "b.prom"},
