@@ -154,20 +154,28 @@ double prom_session_ppd(const prom_session *session)
     return fmax(PROM_FLIP_PPD * session->camera.width / PROM_FLIP_SCREEN_PX, PROM_PPD_MIN);
 }
 
-void prom_session_select(const prom_session *session, prom_selector *selector,
-                         const prom_visibility *visibility, const prom_camera *camera,
-                         double budget_ms, double distance_scale, prom_cut *cut)
+prom_selection prom_session_selection(const prom_session *session, const prom_view *view,
+                                      const prom_visibility *visibility, double budget_ms,
+                                      double distance_scale)
 {
-    prom_view view;
-    prom_view_init(&view, camera);
-    prom_selection selection = {
-        .view = &view,
+    return (prom_selection){
+        .view = view,
         .cost = &session->cost,
         .budget_ms = budget_ms,
         .distance_scale = (float)distance_scale,
         .table_px = (float)(session->model.measured.ppd / prom_session_ppd(session)),
         .visibility = visibility,
     };
+}
+
+void prom_session_select(const prom_session *session, prom_selector *selector,
+                         const prom_visibility *visibility, const prom_camera *camera,
+                         double budget_ms, double distance_scale, prom_cut *cut)
+{
+    prom_view view;
+    prom_view_init(&view, camera);
+    prom_selection selection =
+        prom_session_selection(session, &view, visibility, budget_ms, distance_scale);
     prom_selector_run(selector, &selection, cut);
 }
 

@@ -53,6 +53,10 @@ prom_status prom_session_resize(prom_session *session, const uint32_t size_px[2]
 // Pixels per degree of the pictures: as given, or those of one that fills the screen 0.7 m wide
 // and 0.7 m away that FLIP's values are usually given for.
 double prom_session_ppd(const prom_session *session);
+// What a selector of this session is given. visibility: NULL, or begun for this view.
+prom_selection prom_session_selection(const prom_session *session, const prom_view *view,
+                                      const prom_visibility *visibility, double budget_ms,
+                                      double distance_scale);
 // Selects a cut for a view. visibility: NULL, or begun for it.
 void prom_session_select(const prom_session *session, prom_selector *selector,
                          const prom_visibility *visibility, const prom_camera *camera,
