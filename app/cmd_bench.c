@@ -2,17 +2,21 @@
 #include "app/bench_report.h"
 #include "app/command.h"
 #include "app/output.h"
+#include "app/swap_report.h"
 
 #include "metaobj/base/log.h"
 
 #define DEFAULT_BUDGET_MS 33.0
 #define AUTO_FRAMES 300
 #define QUALITY_FRAMES 20
+#define SWAPS 4
 
 typedef struct bench_options {
     prom_view_options view;
     prom_loop_options loop;
     const char *model, *report, *csv;
+    uint32_t swap_frames, swaps;
+    const char *swap_csv, *swap_plot;
 } bench_options;
 
 enum {
@@ -26,6 +30,10 @@ enum {
     KEY_HOLES,
     KEY_ACCURACY,
     KEY_QUALITY,
+    KEY_SWAP_TEST,
+    KEY_SWAPS,
+    KEY_SWAP_CSV,
+    KEY_SWAP_PLOT,
 };
 
 static const struct argp_option options[] = {
@@ -51,6 +59,16 @@ static const struct argp_option options[] = {
      "FLIP), the share of visible pixels lost, and the shares of cost and nodes that show no "
      "pixel (20)",
      1},
+    {"swap-test", KEY_SWAP_TEST, "N", 0,
+     "After the walk, in N of its views draw one entry of the cut at a time in another way, "
+     "and "
+     "report how well the change of the picture's error (FLIP, against full detail) was "
+     "predicted",
+     2},
+    {"swaps", KEY_SWAPS, "K", 0, "With --swap-test: swaps in each view (4)", 2},
+    {"swap-csv", KEY_SWAP_CSV, "FILE", 0, "With --swap-test: write one row a swap", 2},
+    {"swap-plot", KEY_SWAP_PLOT, "FILE.svg", 0,
+     "With --swap-test: draw predicted against measured change", 2},
     {0},
 };
 
@@ -94,6 +112,22 @@ static error_t parse(int key, char *text, struct argp_state *state)
         o->loop.quality_frames =
             (uint32_t)prom_option_whole(state, "--quality-frames", text, 0, 100000);
         break;
+    case KEY_SWAP_TEST:
+        o->swap_frames = (uint32_t)prom_option_whole(state, "--swap-test", text, 1, 100000);
+        break;
+    case KEY_SWAPS:
+        o->swaps = (uint32_t)prom_option_whole(state, "--swaps", text, 1, 10000);
+        break;
+    case KEY_SWAP_CSV:
+        o->swap_csv = text;
+        break;
+    case KEY_SWAP_PLOT:
+        o->swap_plot = text;
+        break;
+    case ARGP_KEY_END:
+        if ((o->swap_csv || o->swap_plot) && !o->swap_frames)
+            argp_error(state, "--swap-csv and --swap-plot need --swap-test");
+        return prom_option_model(key, text, state, &o->model);
     default:
         return prom_option_model(key, text, state, &o->model);
     }
@@ -135,23 +169,52 @@ static prom_status write_reports(const bench_options *o, const prom_run_facts *f
     if (o->report) status = prom_output_write_json(o->report, prom_bench_json(facts), error);
     if (!status && o->csv)
         status = prom_bench_write_csv(o->csv, &o->loop, facts->result, error);
+    if (!status && o->swap_csv)
+        status = prom_swap_write_csv(o->swap_csv, &facts->session->model, facts->swap, error);
+    if (!status && o->swap_plot)
+        status = prom_swap_write_plot(o->swap_plot, facts->scene, facts->swap, error);
     return status;
+}
+
+// The views that trials are made in.
+static prom_still_options views_of(const bench_options *o, uint32_t views)
+{
+    return (prom_still_options){.selector = o->loop.selector,
+                                .budget_ms = o->loop.budget_ms,
+                                .distance_scale = o->loop.distance_scale,
+                                .path_frames = o->loop.frames,
+                                .views = views};
+}
+
+static prom_status run_trials(const bench_options *o, prom_session *session,
+                              prom_swap_result *swap, prom_error *error)
+{
+    prom_still_options views = views_of(o, o->swap_frames);
+    if (!o->swap_frames) return PROM_OK;
+    return prom_swap_test_run(session, &views, o->swaps, swap, error);
 }
 
 static prom_status run_loop(bench_options *o, prom_session *session, prom_error *error)
 {
     if (!o->loop.frames) o->loop.frames = (uint32_t)session->path.keys.count;
     prom_loop_result result = {0};
+    prom_swap_result swap = {0};
     prom_status status = PROM_OK;
     if (o->loop.keep_folder) status = prom_output_make_folder(o->loop.keep_folder, error);
     if (!status) status = prom_frame_loop_run(session, &o->loop, &result, error);
+    if (!status) status = run_trials(o, session, &swap, error);
     if (!status) {
-        prom_run_facts facts = {session, &o->loop, &result, o->model,
-                                o->view.path ? o->view.path : "auto"};
+        prom_run_facts facts = {.session = session,
+                                .options = &o->loop,
+                                .result = &result,
+                                .swap = o->swap_frames ? &swap : NULL,
+                                .scene = o->model,
+                                .path = o->view.path ? o->view.path : "auto"};
         warn_infeasible(o, &result);
         prom_bench_print(&facts);
         status = write_reports(o, &facts, error);
     }
+    prom_swap_result_finish(&swap);
     prom_loop_result_finish(&result);
     return status;
 }
@@ -160,7 +223,8 @@ prom_status prom_command_bench(int argc, char **argv, prom_error *error)
 {
     bench_options o = {
         .view = prom_view_options_default,
-        .loop = {.warmup = 30, .keep_every = 30, .quality_frames = QUALITY_FRAMES}};
+        .loop = {.warmup = 30, .keep_every = 30, .quality_frames = QUALITY_FRAMES},
+        .swaps = SWAPS};
     argp_parse(&argp, argc, argv, 0, NULL, &o);
     if (!o.view.selector) o.view.selector = "greedy";
     if (!(o.view.budget_ms > 0)) o.view.budget_ms = DEFAULT_BUDGET_MS;
@@ -168,7 +232,7 @@ prom_status prom_command_bench(int argc, char **argv, prom_error *error)
     o.loop.budget_ms = o.view.budget_ms;
     o.loop.distance_scale = o.view.distance_scale;
     prom_command_files files = {{o.model, prom_view_path_file(&o.view), o.view.profile},
-                                {&o.report, &o.csv}};
+                                {&o.report, &o.csv, &o.swap_csv, &o.swap_plot}};
     prom_status status = prom_outputs_check(&files, error);
     if (status) return status;
     prom_session session;

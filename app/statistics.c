@@ -32,6 +32,55 @@ prom_spread prom_spread_of(double *values, size_t count)
     };
 }
 
+typedef struct ranked {
+    double value;
+    size_t place;
+} ranked;
+
+static int compare_ranked(const void *a, const void *b)
+{
+    return compare(&((const ranked *)a)->value, &((const ranked *)b)->value);
+}
+
+// Ranks less their mean; equal values share the mean of theirs.
+static void find_ranks(const double *values, size_t count, ranked *sorted, double *ranks)
+{
+    for (size_t i = 0; i < count; i++) sorted[i] = (ranked){values[i], i};
+    qsort(sorted, count, sizeof *sorted, compare_ranked);
+    for (size_t i = 0, end; i < count; i = end) {
+        for (end = i + 1; end < count && sorted[end].value == sorted[i].value;) end++;
+        double rank = (double)(i + end - 1) / 2 - (double)(count - 1) / 2;
+        for (size_t k = i; k < end; k++) ranks[sorted[k].place] = rank;
+    }
+}
+
+double prom_spearman(const double *x, const double *y, size_t count)
+{
+    ranked *sorted = prom_alloc(count, sizeof *sorted);
+    double *a = prom_alloc(2 * count, sizeof *a), *b = a + count;
+    find_ranks(x, count, sorted, a);
+    find_ranks(y, count, sorted, b);
+    double ab = 0, aa = 0, bb = 0;
+    for (size_t i = 0; i < count; i++) {
+        ab += a[i] * b[i];
+        aa += a[i] * a[i];
+        bb += b[i] * b[i];
+    }
+    prom_free(sorted);
+    prom_free(a);
+    return aa > 0 && bb > 0 ? ab / sqrt(aa * bb) : NAN;
+}
+
+double prom_slope(const double *x, const double *y, size_t count)
+{
+    double xy = 0, xx = 0;
+    for (size_t i = 0; i < count; i++) {
+        xy += x[i] * y[i];
+        xx += x[i] * x[i];
+    }
+    return xx > 0 ? xy / xx : NAN;
+}
+
 static void add_misses(const prom_frame_record *records, size_t count, double budget_ms,
                        prom_run_statistics *s)
 {

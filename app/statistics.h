@@ -26,6 +26,11 @@ typedef struct prom_run_statistics {
 
 // values: count >= 1 of them; sorted on return.
 prom_spread prom_spread_of(double *values, size_t count);
+// Spearman's rank correlation of x and y, ties by mid-ranks, in [-1,1]; NAN with less than two
+// values, or where all of x or all of y are equal.
+double prom_spearman(const double *x, const double *y, size_t count);
+// The s of y = s * x by least squares; NAN where all of x are 0.
+double prom_slope(const double *x, const double *y, size_t count);
 // The accuracy that the selector expected of a frame: benefit / (benefit + loss), 1 where
 // nothing is in view.
 double prom_predicted_accuracy(const prom_frame_record *record);
