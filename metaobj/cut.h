@@ -17,7 +17,8 @@ typedef struct prom_cut_entry {
     // As predicted when the entry was chosen:
     float footprint_px; // pixels of the viewport that the node would cover by itself
     float visible_px;   // pixels of it that are not hidden; what was counted may be more
-    float accuracy;     // of the representation in this view: benefit / visible_px
+    float weight;       // what one of these is worth (benefit/weights.h)
+    float accuracy;     // of the representation: benefit = visible_px * weight * accuracy
     float cost_ms;
     bool whole; // the node is wholly in view
 } prom_cut_entry;

@@ -122,7 +122,7 @@ static uint32_t sort_own(prom_chains *chains, uint32_t node)
     const prom_eval_node *n = &chains->eval->nodes[node];
     for (uint32_t i = 0; i < n->option_count; i++) {
         const prom_option *o = &chains->eval->options[n->first_option + i];
-        prom_chain_point p = {o->cost, o->benefit, n->first_option + i, {INFINITY, 0}};
+        prom_chain_point p = {o->cost, o->value, n->first_option + i, {INFINITY, 0}};
         uint32_t k = i;
         for (; k > 0 && cheaper(&p, &chains->own[k - 1]); k--)
             chains->own[k] = chains->own[k - 1];

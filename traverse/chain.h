@@ -1,6 +1,7 @@
 // Chains: for every visited node a few states of its subtree, from the cheapest on, each with
 // more benefit for more cost and less benefit per cost than the step before: the upper concave
-// hull of what the subtree can show for its cost.
+// hull of what the subtree can show for its cost. Benefits are the values of the options here:
+// as they count where things are ordered.
 //
 // Found bottom-up. What opening a node offers is the sum of its children's chains, their steps
 // merged by falling slope; the node's chain is the hull over that and its own options, thinned

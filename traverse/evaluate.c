@@ -1,6 +1,7 @@
 #include "traverse/evaluate.h"
 
 #include "benefit/accuracy.h"
+#include "traverse/evaluate_private.h"
 #include "traverse/footprint.h"
 #include "traverse/view_private.h"
 
@@ -48,6 +49,13 @@ void prom_eval_finish(prom_eval *eval)
 
 // ---- top down: culling, appearance, pixels, options
 
+// Share of a node's footprint that is not hidden behind others.
+static float visible_share(const prom_eval *eval, uint32_t node)
+{
+    const prom_visibility *visibility = eval->selection->visibility;
+    return visibility ? prom_visibility_share(visibility, node) : 1.0f;
+}
+
 // Culls a node and notes how it appears, with the pixels that it would have by itself; returns
 // the part of it that is in view, 0 when culled.
 static float look_at(prom_eval *eval, uint32_t node, bool parent_inside)
@@ -60,7 +68,8 @@ static float look_at(prom_eval *eval, uint32_t node, bool parent_inside)
     n->culled = cull == PROM_OUTSIDE;
     n->expanded = false;
     n->option_count = 0;
-    n->px = n->footprint_px = 0.0f;
+    n->px = n->worth_px = n->value_px = n->footprint_px = 0.0f;
+    n->weight = 1.0f;
     n->cmin = n->cmin_benefit = 0.0;
     n->cmin_option = PROM_NONE;
     if (n->culled) return 0.0f;
@@ -76,14 +85,11 @@ static float look_at(prom_eval *eval, uint32_t node, bool parent_inside)
     n->near_case = a.near_case;
     float in_view;
     n->footprint_px = prom_footprint_in_view(view, m, node, &a, &in_view);
+    if (eval->weighted)
+        n->weight = prom_weight_in_view(&eval->selection->weighting, view, m, node);
+    if (eval->selection->order == PROM_ORDER_SUM)
+        n->value_px = visible_share(eval, node) * n->footprint_px * n->weight;
     return in_view;
-}
-
-// Share of a node's footprint that is not hidden behind others.
-static float visible_share(const prom_eval *eval, uint32_t node)
-{
-    const prom_visibility *visibility = eval->selection->visibility;
-    return visibility ? prom_visibility_share(visibility, node) : 1.0f;
 }
 
 // The size that sets the accuracy. Beyond the measured sizes the projected error counts, and
@@ -121,6 +127,7 @@ static void add_options(prom_eval *eval, uint32_t node)
     const prom_prototype *p = &m->prototypes[m->prototype[node]];
     n->first_option = eval->option_count;
     n->option_count = 0;
+    if (eval->selection->order == PROM_ORDER_PIXELS) n->value_px = n->worth_px;
     if (n->near_case && m->child_count[node]) return;
     float size = accuracy_size(eval, node);
     prom_accuracy_place place = place_of(eval, node);
@@ -133,21 +140,22 @@ static void add_options(prom_eval *eval, uint32_t node)
         bool any_size = (eval->any_size && eval->any_size[rep]) ||
                         (is_mesh && n->hidden && eval->any_mesh_hides);
         if (too_large && !any_size) continue;
+        float accuracy = prom_accuracy(m, rep, &place, p->radius);
+        float benefit = n->worth_px * accuracy;
         eval->options[eval->option_count++] = (prom_option){
-            .rep = rep,
-            .benefit = n->px * prom_accuracy(m, rep, &place, p->radius),
-        };
+            .rep = rep, .accuracy = accuracy, .benefit = benefit, .value = benefit};
     }
     n->option_count = eval->option_count - n->first_option;
+    if (eval->heeds_priors && eval->selection->priors) prom_eval_heed_priors(eval, node);
 }
 
-// What shows of a node, or nothing where that is too little.
+// What shows of a node, or nothing where that is too little; it is worth as much as it is.
 static void set_visible(prom_eval *eval, uint32_t node, float px)
 {
     prom_eval_node *n = &eval->nodes[node];
     n->hidden =
         eval->selection->visibility && px < HIDDEN_PX && px < HIDDEN_SHARE * n->footprint_px;
-    n->px = n->hidden ? 0.0f : px;
+    n->px = n->worth_px = n->hidden ? 0.0f : px;
 }
 
 // A node under none with pixels of its own keeps those that look_at gave it; a cluster that
@@ -158,6 +166,23 @@ static void start_flow(prom_eval *eval, uint32_t node)
     n->in_flow = !(n->near_case && eval->model->child_count[node]);
     if (!n->in_flow) n->footprint_px = 0.0f;
     set_visible(eval, node, visible_share(eval, node) * n->footprint_px);
+    n->worth_px *= n->weight;
+}
+
+// Splits what a node's pixels are worth among its children: by what shows of each (in_view),
+// and by their weights. So the node and its children are worth the same.
+static void flow_worth(prom_eval *eval, uint32_t node)
+{
+    const prom_model *m = eval->model;
+    const prom_eval_node *n = &eval->nodes[node];
+    uint32_t first = m->first_child[node], count = m->child_count[node];
+    for (uint32_t c = 0; c < count; c++)
+        if (!eval->nodes[first + c].culled) eval->in_view[c] *= eval->nodes[first + c].weight;
+    prom_split_pixels(m, m->prototype[node], n->dir, n->worth_px, eval->in_view, eval->px);
+    for (uint32_t c = 0; c < count; c++) {
+        prom_eval_node *child = &eval->nodes[first + c];
+        if (!child->culled) child->worth_px = child->hidden ? 0.0f : eval->px[c];
+    }
 }
 
 // Splits a node's footprint among its children by their baked shares, and what is visible of it
@@ -178,6 +203,7 @@ static void flow_down(prom_eval *eval, uint32_t node)
     prom_split_pixels(m, m->prototype[node], n->dir, n->px, eval->in_view, eval->px);
     for (uint32_t c = 0; c < count; c++)
         if (!children[c].culled) set_visible(eval, first + c, eval->px[c]);
+    if (eval->weighted) flow_worth(eval, node);
 }
 
 static void expand(prom_eval *eval, uint32_t node)
@@ -219,147 +245,17 @@ bool prom_eval_open_visible(void *user, uint32_t node)
     for (uint32_t i = 0; i < n->option_count; i++)
         best = fmaxf(best, eval->options[n->first_option + i].benefit);
     float loss = n->size_px < TINY_SIZE_PX ? TINY_LOSS_PX : SMALL_LOSS_PX;
-    return n->px - best >= loss * eval->tolerance;
-}
-
-// ---- bottom up: costs and cmin
-
-// Sum of the pixels of all nodes that stand for themselves: more than the screen where they
-// hide each other.
-static double sum_px(const prom_eval *eval)
-{
-    double sum = 0.0;
-    for (uint32_t i = 0; i < eval->visited_count; i++) {
-        uint32_t node = eval->visited[i];
-        uint32_t parent = eval->model->parent[node];
-        bool topmost = parent == PROM_NONE || !eval->nodes[parent].in_flow;
-        if (topmost && eval->nodes[node].in_flow) sum += eval->nodes[node].px;
-    }
-    return sum;
-}
-
-// Part of the pixels that are shaded: no more than there are on the screen.
-static double shaded_share(double sum, double screen)
-{
-    return sum > screen ? screen / sum : 1.0;
-}
-
-// The background layer is drawn whole, by its finest meshes, behind everything: where the tree
-// leaves the screen free, its pixels are shaded, each once.
-static double background_cost(const prom_eval *eval, double sum, double screen)
-{
-    const prom_model *m = eval->model;
-    const prom_view *view = eval->selection->view;
-    double hidden = fmin(sum, screen);
-    double ms = 0.0, pixel_ms = 0.0;
-    uint32_t seen = 0;
-    for (uint32_t node = m->tree_count; node < m->node_count; node++) {
-        const prom_prototype *p = &m->prototypes[m->prototype[node]];
-        if (!p->rep_count) continue;
-        const prom_representation *rep = &m->reps[p->first_rep];
-        double geometry = prom_cost_of_rep(eval->selection->cost, rep, 0.0, 0.0);
-        ms += geometry;
-        if (prom_view_cull(view, m->center[node], m->half[node]) == PROM_OUTSIDE) continue;
-        pixel_ms +=
-            prom_cost_of_rep(eval->selection->cost, rep, screen - hidden, hidden) - geometry;
-        seen++;
-    }
-    return seen ? ms + pixel_ms / seen : ms;
-}
-
-// Pixels that are shaded for each that shows, where `layers` lie behind each other in any
-// order. Of opaque ones, those are shaded that are nearer than all before: of n, 1 + 1/2 + ...
-// + 1/n. Where a texture decides what is there, all may be.
-static double shaded_layers(const prom_representation *rep)
-{
-    bool opaque = rep->shading == PROM_SHADE_PLAIN || rep->shading == PROM_SHADE_TEXTURED;
-    double layers = (double)rep->layers;
-    return opaque ? fmin(1.0 + log(layers), layers) : layers;
-}
-
-static void set_costs(prom_eval *eval, uint32_t node, double share)
-{
-    const prom_selection *s = eval->selection;
-    const prom_eval_node *n = &eval->nodes[node];
-    double shown = share * n->px, footprint = fmax(n->footprint_px, shown), box = -1.0;
-    for (uint32_t i = 0; i < n->option_count; i++) {
-        prom_option *o = &eval->options[n->first_option + i];
-        const prom_representation *rep = &eval->model->reps[o->rep];
-        double filled = (double)rep->layers, shaded = shaded_layers(rep);
-        if (rep->kind != PROM_REP_MESH && footprint > 0.0) { // a box is filled all over
-            if (box < 0.0)
-                box = prom_box_px(s->view, eval->model, node, n->dir, (float)footprint) /
-                      footprint;
-            filled *= box;
-            shaded *= box;
-        }
-        o->cost =
-            prom_cost_of_rep(s->cost, rep, shaded * shown, filled * footprint - shaded * shown);
-    }
-}
-
-static void take_cheapest(prom_eval *eval, uint32_t node)
-{
-    prom_eval_node *n = &eval->nodes[node];
-    for (uint32_t i = 0; i < n->option_count; i++) {
-        const prom_option *o = &eval->options[n->first_option + i];
-        bool better = n->cmin_option == PROM_NONE || o->cost < n->cmin ||
-                      (o->cost == n->cmin && o->benefit > n->cmin_benefit);
-        if (!better) continue;
-        n->cmin = o->cost;
-        n->cmin_benefit = o->benefit;
-        n->cmin_option = n->first_option + i;
-    }
-}
-
-// Compares with opening. A node that turns out to have nothing in the frustum is culled.
-static void take_opening(prom_eval *eval, uint32_t node)
-{
-    prom_eval_node *n = &eval->nodes[node];
-    uint32_t first = eval->model->first_child[node];
-    uint32_t end = first + eval->model->child_count[node];
-    double cost = 0.0, benefit = 0.0;
-    bool any = false;
-    for (uint32_t c = first; c < end; c++) {
-        const prom_eval_node *child = &eval->nodes[c];
-        if (child->culled) continue;
-        any = true;
-        cost += child->cmin;
-        benefit += child->cmin_benefit;
-    }
-    if (!any) {
-        n->culled = true;
-        n->option_count = 0;
-        n->cmin = n->cmin_benefit = 0.0;
-        n->cmin_option = PROM_NONE;
-    } else if (n->cmin_option == PROM_NONE || cost < n->cmin ||
-               (cost == n->cmin && benefit > n->cmin_benefit)) {
-        n->cmin = cost;
-        n->cmin_benefit = benefit;
-        n->cmin_option = PROM_NONE;
-    }
-}
-
-static void walk_up(prom_eval *eval)
-{
-    const prom_cost_model *cost = eval->selection->cost;
-    double sum = sum_px(eval), screen = prom_view_screen_px(eval->selection->view);
-    double share = shaded_share(sum, screen);
-    eval->fixed_ms = cost->fixed_ms + background_cost(eval, sum, screen);
-    for (uint32_t i = eval->visited_count; i-- > 0;) {
-        uint32_t node = eval->visited[i];
-        set_costs(eval, node, share);
-        take_cheapest(eval, node);
-        if (eval->nodes[node].expanded) take_opening(eval, node);
-    }
+    return n->worth_px - best >= loss * eval->tolerance;
 }
 
 void prom_eval_run(prom_eval *eval, const prom_selection *selection, prom_eval_open *open,
                    void *user)
 {
     eval->selection = selection;
+    eval->weighted = prom_weighting_is_on(&selection->weighting);
     walk_down(eval, open, user);
-    walk_up(eval);
+    prom_eval_find_costs(eval);
+    prom_eval_find_values(eval);
 }
 
 // ---- cuts
@@ -387,13 +283,14 @@ void prom_eval_emit(const prom_eval *eval, uint32_t node, uint32_t option, prom_
                                        .depth = n->nearest,
                                        .footprint_px = n->footprint_px,
                                        .visible_px = n->px,
-                                       .accuracy = n->px > 0.0f ? o->benefit / n->px : 1.0f,
+                                       .weight = n->px > 0.0f ? n->worth_px / n->px : n->weight,
+                                       .accuracy = o->accuracy,
                                        .cost_ms = (float)o->cost,
                                        .whole = n->inside,
                                    });
     cut->predicted_ms += o->cost;
     cut->benefit += o->benefit;
-    cut->loss += (double)n->px - o->benefit;
+    cut->loss += (double)n->worth_px - o->benefit;
 }
 
 void prom_eval_emit_cmin(prom_eval *eval, prom_cut *cut)

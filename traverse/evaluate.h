@@ -14,7 +14,9 @@
 // A valid representation of a node in this view.
 typedef struct prom_option {
     double cost;
-    float benefit;
+    float accuracy;
+    float benefit; // weighted pixels shown right
+    float value;   // the same, as it counts where things are ordered
     uint32_t rep;
 } prom_option;
 
@@ -23,6 +25,9 @@ typedef struct prom_eval_node {
     uint32_t cmin_option;      // its own option in that cut, or PROM_NONE: opened
     uint32_t first_option, option_count;
     float px;           // visible pixels
+    float worth_px;     // the same, each times its weight
+    float value_px;     // as they count where things are ordered
+    float weight;       // of the node by itself
     float footprint_px; // pixels, if nothing outside its ancestor hid it
     float distance, nearest, size_px;
     float uv[2]; // direction to the eye, see prom_appearance
@@ -51,8 +56,10 @@ typedef struct prom_eval {
     const bool *any_size; // per representation: valid whatever its max_size_px says, the
                           // selector knows better; NULL: none. The selector's own
     bool any_mesh_hides;  // what is hidden may be drawn by any mesh, whatever its gaps
-    float tolerance;      // factor on what prom_eval_open_visible takes for invisible
-    float *in_view, *px;  // of the children of one node
+    bool heeds_priors;
+    bool weighted;       // in this view
+    float tolerance;     // factor on what prom_eval_open_visible takes for invisible
+    float *in_view, *px; // of the children of one node
     uint32_t max_children;
 } prom_eval;
 

@@ -38,7 +38,7 @@ static void *create(const prom_model *model)
 {
     greedy_state *g = prom_calloc(1, sizeof *g);
     prom_eval_init(&g->eval, model);
-    g->eval.any_mesh_hides = true;
+    g->eval.any_mesh_hides = g->eval.heeds_priors = true;
     prom_chains_init(&g->chains, &g->eval);
     g->heap.entries = prom_alloc(model->tree_count, sizeof *g->heap.entries);
     g->place = prom_alloc(model->tree_count, sizeof *g->place);

@@ -1,10 +1,10 @@
 // The classic two-phase traversal (Maciel and Shirley 1995, as DESIGN 7 gives it).
 //
 // Phase 1 goes over everything in the frustum and gives each node its place in the list (a leaf
-// its visible pixels, a cluster the highest of its children's) and an initial representation
-// (least cost per benefit). Phase 2 takes nodes from the list by falling benefit: a leaf is
-// improved as far as the time allows, a cluster replaced by its visible children if the time
-// allows; what does not fit is skipped.
+// its visible pixels, a cluster the highest of its children's, or their sum) and an initial
+// representation (least cost per benefit). Phase 2 takes nodes from the list by falling
+// benefit: a leaf is improved as far as the time allows, a cluster replaced by its visible
+// children if the time allows; what does not fit is skipped.
 //
 // A cluster that has no valid representation is always replaced. Its initial cost is therefore
 // that of its children's initial ones: the time is set aside before anything else is bought,
@@ -32,7 +32,7 @@ static void *create(const prom_model *model)
 {
     meta_state *state = prom_calloc(1, sizeof *state);
     prom_eval_init(&state->eval, model);
-    state->eval.any_mesh_hides = true;
+    state->eval.any_mesh_hides = state->eval.heeds_priors = true;
     state->nodes = prom_alloc(model->tree_count, sizeof *state->nodes);
     state->list.entries = prom_alloc(model->tree_count, sizeof *state->list.entries);
     return state;
@@ -57,7 +57,7 @@ static uint32_t initial_option(const prom_eval *eval, const prom_eval_node *n)
     double least = INFINITY;
     for (uint32_t i = 0; i < n->option_count; i++) {
         const prom_option *o = &eval->options[n->first_option + i];
-        double ratio = o->cost / fmax(o->benefit, 1e-30);
+        double ratio = o->cost / fmax(o->value, 1e-30);
         if (ratio < least) least = ratio, best = n->first_option + i;
     }
     return best;
@@ -68,11 +68,12 @@ static void gather_children(meta_state *state, uint32_t node)
 {
     const prom_model *m = state->eval.model;
     meta_node *n = &state->nodes[node];
+    bool sum = state->eval.selection->order == PROM_ORDER_SUM;
     double cost = 0.0;
     for (uint32_t c = m->first_child[node]; c < m->first_child[node] + m->child_count[node];
          c++) {
         if (state->eval.nodes[c].culled) continue;
-        n->key = fmax(n->key, state->nodes[c].key);
+        n->key = sum ? n->key + state->nodes[c].key : fmax(n->key, state->nodes[c].key);
         cost += state->nodes[c].cost;
     }
     if (n->option == PROM_NONE) n->cost = cost;
@@ -93,7 +94,7 @@ static void phase_1(meta_state *state)
         if (e->expanded)
             gather_children(state, node);
         else
-            state->nodes[node].key = e->px;
+            state->nodes[node].key = e->value_px;
     }
 }
 
@@ -107,7 +108,7 @@ static uint32_t improved(const prom_eval *eval, const prom_eval_node *n, uint32_
     for (uint32_t i = 0; i < n->option_count; i++) {
         const prom_option *o = &eval->options[n->first_option + i], *b = &eval->options[best];
         if (o->cost - eval->options[current].cost > left_ms) continue;
-        if (o->benefit > b->benefit || (o->benefit == b->benefit && o->cost < b->cost))
+        if (o->value > b->value || (o->value == b->value && o->cost < b->cost))
             best = n->first_option + i;
     }
     return best;
