@@ -66,8 +66,8 @@ static double mean_of(const prom_metric_class *metric, double sum, size_t count)
     return metric->squares ? sqrt(mean) : mean;
 }
 
-void prom_pool(const prom_metric_class *metric, const float *map, size_t count,
-               const uint8_t *footprint, const uint8_t *differs, prom_pooled *pooled)
+void prom_errors_pool(const prom_metric_class *metric, const float *map, size_t count,
+                      const uint8_t *footprint, const uint8_t *differs, prom_pooled *pooled)
 {
     sums s = {0};
     float *memory = prom_alloc(2 * count, sizeof *memory);

@@ -81,17 +81,20 @@ static uint32_t radius(const void *state)
 
 // ---- the filter
 
-// In doubles: the variance is a small difference of large numbers.
+// In doubles: the variance is a small difference of large numbers (and not below 0 but for
+// rounding).
 static void filter_down(const double *taps, const float *top, size_t stride, scratch *s)
 {
-    const float *restrict middle = top + RADIUS * stride;
+    const int64_t step = (int64_t)stride;
+    const double *restrict t = taps;
+    const float *restrict middle = top + RADIUS * step;
     double *restrict first = s->first, *restrict second = s->second;
-    for (size_t x = 0; x < stride; x++) {
-        double value = middle[x], sum = taps[0] * value, squares = taps[0] * value * value;
-        for (size_t i = 1; i <= RADIUS; i++) {
-            double up = middle[x - i * stride], down = middle[x + i * stride];
-            sum += taps[i] * (up + down);
-            squares += taps[i] * (up * up + down * down);
+    for (int64_t x = 0; x < step; x++) {
+        double value = middle[x], sum = t[0] * value, squares = t[0] * value * value;
+        for (int i = 1; i <= RADIUS; i++) {
+            double up = middle[x - i * step], down = middle[x + i * step];
+            sum += t[i] * (up + down);
+            squares += t[i] * (up * up + down * down);
         }
         first[x] = sum;
         second[x] = squares;
@@ -101,17 +104,17 @@ static void filter_down(const double *taps, const float *top, size_t stride, scr
 static void filter_along(const double *taps, const scratch *s, uint32_t width, float *mean,
                          float *variance)
 {
+    const double *restrict t = taps;
     const double *restrict first = s->first + RADIUS, *restrict second = s->second + RADIUS;
     float *restrict to_mean = mean, *restrict to_variance = variance;
     for (int64_t x = 0; x < width; x++) {
-        double sum = taps[0] * first[x], squares = taps[0] * second[x];
+        double sum = t[0] * first[x], squares = t[0] * second[x];
         for (int i = 1; i <= RADIUS; i++) {
-            sum += taps[i] * (first[x - i] + first[x + i]);
-            squares += taps[i] * (second[x - i] + second[x + i]);
+            sum += t[i] * (first[x - i] + first[x + i]);
+            squares += t[i] * (second[x - i] + second[x + i]);
         }
-        double spread = squares - sum * sum;
         to_mean[x] = (float)sum;
-        to_variance[x] = (float)(spread > 0 ? spread : 0);
+        to_variance[x] = (float)fabs(squares - sum * sum);
     }
 }
 
