@@ -90,8 +90,8 @@ static inline void random_add_rep(prom_model *m, uint64_t *seed, prom_rep_kind k
     for (uint32_t d = 0; d < PROM_DIRS_LARGE && kind == PROM_REP_MESH; d++)
         for (uint32_t s = 0; s < PROM_SIZES_LARGE; s++)
             m->accuracy[r].large[d][s] =
-                quality >= 1.0f ? 255
-                                : (uint8_t)(m->accuracy[r].bins[d][PROM_SIZES - 1] / (2 + s));
+                (uint8_t)(quality >= 1.0f ? 255
+                                          : m->accuracy[r].bins[d][PROM_SIZES - 1] / (2 + s));
 }
 
 static inline void random_prototype(prom_model *m, uint64_t *seed, uint32_t children)

@@ -173,10 +173,11 @@ static void errors_of_extremes_are_in_range(void **state)
             for (uint32_t i = 0; i < W * H * 4; i++) {
                 const uint32_t p = i / 4;
                 bool white = (p % W / block + p / W / block) % 2;
-                memory.bytes[0][i] = white ? 255 : 0;
-                memory.bytes[1][i] = kind == 0   ? 255 - memory.bytes[0][i]
-                                     : kind == 1 ? 255
-                                                 : (uint8_t)(255 * random_below(&seed, 2));
+                const uint8_t here = white ? 255 : 0;
+                const uint8_t others[3] = {(uint8_t)(255 - here), 255,
+                                           (uint8_t)(255 * random_below(&seed, 2))};
+                memory.bytes[0][i] = here;
+                memory.bytes[1][i] = others[kind];
             }
             double error = compare(name, a, b, NULL);
             assert_true(error > 0 || !strcmp(name, "sobel"));
