@@ -1,14 +1,12 @@
-#include <OpenImageIO/filesystem.h>
+#include "builder/image_open.h"
+
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
-#include <OpenImageIO/imageio.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
 extern "C" {
@@ -22,69 +20,6 @@ using namespace OIIO;
 
 namespace
 {
-
-// A picture beyond this is taken for a broken header (by taste: 16K x 16K).
-constexpr int max_side = 16384;
-constexpr uint64_t max_pixels = 1ull << 28;
-constexpr uint64_t max_file_bytes = 1ull << 30;
-
-bool starts(const uint8_t *data, size_t bytes, size_t at, const char *magic, size_t length)
-{
-    return bytes >= at + length && std::memcmp(data + at, magic, length) == 0;
-}
-
-// TGA has no magic: the header's fields must be possible ones.
-bool is_tga(const uint8_t *d, size_t bytes)
-{
-    if (bytes < 18 || d[1] > 1) return false;
-    int type = d[2] & ~8;
-    if ((d[2] & ~11) || type < 1 || type > 3 || (type == 1 && d[1] != 1)) return false;
-    int bits = d[16];
-    bool depth = bits == 8 || bits == 15 || bits == 16 || bits == 24 || bits == 32;
-    return depth && (d[12] | d[13]) && (d[14] | d[15]);
-}
-
-// The reader by what the data are, never by the file's ending: many decoders crash when fed a
-// foreign format. NULL when unknown.
-const char *format_of(const uint8_t *d, size_t n)
-{
-    static const struct {
-        size_t at;
-        const char *magic;
-        size_t length;
-        const char *format;
-    } table[] = {
-        {0, "\x89PNG\r\n\x1a\n", 8, "png"},
-        {0, "\xff\xd8\xff", 3, "jpeg"},
-        {0, "II*\0", 4, "tiff"},
-        {0, "MM\0*", 4, "tiff"},
-        {0, "DDS ", 4, "dds"},
-        {0, "GIF8", 4, "gif"},
-        {0, "BM", 2, "bmp"},
-        {8, "WEBP", 4, "webp"},
-        {0, "#?", 2, "hdr"},
-        {0, "8BPS", 4, "psd"},
-        {0, "\x76\x2f\x31\x01", 4, "openexr"},
-    };
-    for (const auto &row : table)
-        if (starts(d, n, row.at, row.magic, row.length)) return row.format;
-    if (n > 2 && d[0] == 'P' && d[1] >= '1' && d[1] <= '6' && std::strchr(" \t\r\n", d[2]))
-        return "pnm";
-    return is_tga(d, n) ? "targa" : nullptr;
-}
-
-std::string one_line(std::string text)
-{
-    std::replace(text.begin(), text.end(), '\n', ' ');
-    while (!text.empty() && text.back() == ' ') text.pop_back();
-    return text.empty() ? "unknown reason" : text;
-}
-
-prom_status broken(prom_error *error, const char *name, const std::string &why)
-{
-    return prom_fail(error, PROM_ERR_INPUT, "%s: the picture cannot be read: %s", name,
-                     one_line(why).c_str());
-}
 
 // Interleaved channels of the file -> RGBA floats in [0,1] as stored.
 void expand(const float *in, int channels, size_t count, float *out)
@@ -178,56 +113,17 @@ std::string read_pixels(ImageInput &input, const ImageSpec &spec, std::vector<ui
     return "";
 }
 
-std::string check_spec(const ImageSpec &spec)
-{
-    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1)
-        return "it has no two-dimensional picture";
-    if (spec.width > max_side || spec.height > max_side ||
-        uint64_t(spec.width) * uint64_t(spec.height) > max_pixels || spec.nchannels > 64)
-        return "it claims " + std::to_string(spec.width) + "x" + std::to_string(spec.height) +
-               " pixels; at most 16384x16384 are read";
-    return "";
-}
-
 prom_status decode(const uint8_t *data, size_t bytes, const char *name, uint32_t max_px,
                    uint32_t *width, uint32_t *height, uint8_t **rgba, prom_error *error)
 {
-    const char *format = format_of(data, bytes);
-    if (!format) return broken(error, name, "it is of no known picture format");
-    auto input = ImageInput::create(format);
-    if (!input) {
-        (void)OIIO::geterror();
-        return broken(error, name, std::string("this build reads no ") + format);
-    }
-    input->threads(1);
-    ImageSpec config, spec;
-    config["oiio:UnassociatedAlpha"] = 1;
-    Filesystem::IOMemReader memory(data, bytes);
-    bool from_memory = input->supports("ioproxy") && input->set_ioproxy(&memory);
-    std::string file = std::string("picture.") + format, temporary;
-    if (!from_memory) { // the few readers that insist on a file get one
-        std::string path = Filesystem::temp_directory_path() + "/promenade-XXXXXX";
-        int fd = mkstemp(path.data());
-        if (fd < 0) return broken(error, name, "no temporary file could be made");
-        file = temporary = path;
-        bool written = write(fd, data, bytes) == ssize_t(bytes);
-        close(fd);
-        if (!written) {
-            unlink(path.c_str());
-            return broken(error, name, "no temporary file could be written");
-        }
-    }
-    bool open = input->open(file, spec, config);
-    if (!temporary.empty()) unlink(temporary.c_str());
-    if (!open) return broken(error, name, input->geterror());
-    std::string why = check_spec(spec);
+    prom::opened_image image;
     std::vector<uint8_t> pixels;
-    if (why.empty()) why = read_pixels(*input, spec, pixels);
-    input->close();
-    int w = spec.width, h = spec.height;
+    std::string why = prom::open_image(data, bytes, prom::max_pixels, image);
+    if (why.empty()) why = read_pixels(*image.input, image.spec, pixels);
+    int w = image.spec.width, h = image.spec.height;
     if (why.empty() && uint32_t(std::max(w, h)) > max_px)
         why = reduce(pixels, w, h, int(max_px));
-    if (!why.empty()) return broken(error, name, why);
+    if (!why.empty()) return prom::broken(error, name, why);
     *rgba = static_cast<uint8_t *>(prom_alloc(pixels.size(), 1));
     std::memcpy(*rgba, pixels.data(), pixels.size());
     *width = uint32_t(w);
@@ -250,22 +146,8 @@ bool encode(uint32_t width, uint32_t height, int channels, const uint8_t *pixels
     output->threads(1);
     bool good = output->set_ioproxy(&memory) && output->open("picture.png", spec) &&
                 output->write_image(TypeDesc::UINT8, pixels) && output->close();
-    if (!good) why = one_line(output->geterror());
+    if (!good) why = prom::one_line(output->geterror());
     return good;
-}
-
-// A C++ exception must not leave this file.
-template <class F> prom_status guarded(prom_error *error, const char *name, F body)
-{
-    try {
-        return body();
-    } catch (const std::bad_alloc &) {
-        return broken(error, name, "out of memory");
-    } catch (const std::exception &e) {
-        return broken(error, name, e.what());
-    } catch (...) {
-        return broken(error, name, "the decoder failed");
-    }
 }
 
 } // namespace
@@ -274,18 +156,19 @@ prom_status prom_image_read_memory(const void *data, size_t bytes, const char *n
                                    uint32_t max_px, uint32_t *width, uint32_t *height,
                                    uint8_t **rgba, prom_error *error)
 {
-    return guarded(error, name, [&] {
+    return prom::guarded(error, name, [&] {
         return decode(static_cast<const uint8_t *>(data), bytes, name,
-                      std::clamp(max_px, 1u, uint32_t(max_side)), width, height, rgba, error);
+                      std::clamp(max_px, 1u, uint32_t(prom::max_side)), width, height, rgba,
+                      error);
     });
 }
 
 prom_status prom_image_read(const char *path, uint32_t max_px, uint32_t *width,
                             uint32_t *height, uint8_t **rgba, prom_error *error)
 {
-    return guarded(error, path, [&] {
+    return prom::guarded(error, path, [&] {
         prom_bytes file;
-        prom_status status = prom_file_read(path, max_file_bytes, &file, error);
+        prom_status status = prom_file_read(path, prom::max_file_bytes, &file, error);
         if (status) return status;
         status = prom_image_read_memory(file.data, file.count, path, max_px, width, height,
                                         rgba, error);
@@ -297,7 +180,7 @@ prom_status prom_image_read(const char *path, uint32_t max_px, uint32_t *width,
 bool prom_image_resize(const uint8_t *rgba, uint32_t width, uint32_t height, uint8_t *out,
                        uint32_t out_width, uint32_t out_height)
 {
-    return guarded(nullptr, "resampling", [&] {
+    return prom::guarded(nullptr, "resampling", [&] {
                std::string why = resample(rgba, int(width), int(height), out, int(out_width),
                                           int(out_height));
                return why.empty() ? PROM_OK : PROM_ERR_UNSUPPORTED;
@@ -308,7 +191,7 @@ prom_status prom_image_encode_png(uint32_t width, uint32_t height, int channels,
                                   const uint8_t *pixels, uint8_t **png, size_t *bytes,
                                   prom_error *error)
 {
-    return guarded(error, "PNG", [&] {
+    return prom::guarded(error, "PNG", [&] {
         std::vector<unsigned char> data;
         std::string why;
         if (!encode(width, height, channels, pixels, data, why))

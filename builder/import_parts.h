@@ -1,11 +1,12 @@
-// Private to import: what its pieces share. import.c runs the child and judges its end;
-// everything that touches the foreign file (import_gltf*.c, import_file.c, import_scene.c,
-// import_levels.c, import_axes.c, import_mesh.c, import_material.c) runs in the child, and
-// decoding of pictures (import_image.c) in children of its own (import_workers.c);
-// import_wire.c carries the result over.
+// Private to import: what its pieces share. import.c runs the child (child.h); everything
+// that touches the foreign file (import_gltf*.c, import_file.c, import_scene.c,
+// import_levels.c, import_axes.c, import_mesh.c, import_material.c) runs in it, and decoding of
+// pictures (import_image.c) in children of its own (import_workers.c); import_wire.c carries
+// the result over.
 #ifndef PROM_BUILDER_IMPORT_PARTS_H
 #define PROM_BUILDER_IMPORT_PARTS_H
 
+#include "builder/child.h"
 #include "builder/import_gltf.h"
 #include "builder/source.h"
 
@@ -26,10 +27,8 @@ typedef struct prom_import {
     PROM_ARRAY(uint32_t) node_numbers; // per node of the source, while gltf_file.numbered
     prom_source *source;               // the result
     PROM_ARRAY(char *) warnings;
-    char *doing; // PROM_IMPORT_DOING bytes that the parent can read after a crash
+    char *doing; // PROM_CHILD_DOING bytes that the parent can read after a crash
 } prom_import;
-
-#define PROM_IMPORT_DOING 256u
 
 // Called in the child before it reads, for tests that simulate a crash or a hang. NULL.
 extern void (*prom_import_child_hook)(void);

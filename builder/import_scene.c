@@ -18,7 +18,7 @@ void prom_import_doing(prom_import *import, const char *format, ...)
     va_list args;
     va_start(args, format);
     pthread_mutex_lock(&lock);
-    vsnprintf(import->doing, PROM_IMPORT_DOING, format, args);
+    vsnprintf(import->doing, PROM_CHILD_DOING, format, args);
     pthread_mutex_unlock(&lock);
     va_end(args);
 }
