@@ -2,7 +2,10 @@
 
 #include "app/options.h"
 
+#include "benefit/metric.h"
+
 #include <inttypes.h>
+#include <stdio.h>
 #include <string.h>
 
 enum {
@@ -20,6 +23,8 @@ enum {
     KEY_UP_AXIS,
     KEY_UNIT,
     KEY_PROFILE,
+    KEY_METRIC,
+    KEY_PPD,
     KEY_MEMORY,
     KEY_FORCE,
     KEY_FROM,
@@ -54,6 +59,14 @@ static const struct argp_option options[] = {
     {0, 0, 0, 0, "Impostors and cost:", 4},
     {"texture-mb", KEY_TEXTURE_MB, "MB", 0, "Memory for impostor pictures (256)", 4},
     {"profile", KEY_PROFILE, "FILE", 0, "Cost profile that the model is built for", 4},
+    {"metric", KEY_METRIC, "NAME", 0,
+     "How pictures are compared: flip, ssim, rmse, sobel or edge-blur; constant compares "
+     "nothing and takes every representation for half right (" PROM_MEASURE_METRIC ")",
+     4},
+    {"ppd", KEY_PPD, "X", 0,
+     "Pixels per degree of the viewer's angle that they are compared for (22.34: 1280 pixels "
+     "on a screen 0.7 m wide, 0.7 m away)",
+     4},
     {0, 0, 0, 0, "Visibility:", 5},
     {"view-cells", KEY_VIEW_CELLS, "WHERE", 0,
      "Find out what can be seen from where the viewer may be: along camera paths "
@@ -236,6 +249,35 @@ static void check_objects(const prom_object_options *objects, const struct argp_
                    least, most);
 }
 
+static const char *known_metric(const struct argp_state *state, const char *name)
+{
+    if (!strcmp(name, PROM_METRIC_CONSTANT) || prom_metric_named(name)) return name;
+    char names[256] = "";
+    for (size_t i = 0, n = 0; i < prom_metric_count() && n < sizeof names; i++)
+        n += (size_t)snprintf(names + n, sizeof names - n, "%s, ", prom_metric_at(i)->name);
+    argp_error(state, "--metric: there is no `%s`; give %sor " PROM_METRIC_CONSTANT, name,
+               names);
+    return NULL;
+}
+
+static error_t parse_measure(prom_build_command *o, int key, char *text,
+                             struct argp_state *state)
+{
+    prom_measure_options *measure = &o->build.measure;
+    switch (key) {
+    case KEY_METRIC:
+        measure->metric = known_metric(state, text);
+        break;
+    case KEY_PPD:
+        measure->ppd =
+            (float)prom_option_number(state, "--ppd", text, PROM_PPD_MIN, PROM_PPD_MAX);
+        break;
+    default:
+        return parse_tree(o, key, text, state);
+    }
+    return 0;
+}
+
 static error_t parse_view_cells(prom_build_command *o, int key, char *text,
                                 struct argp_state *state)
 {
@@ -250,7 +292,7 @@ static error_t parse_view_cells(prom_build_command *o, int key, char *text,
         o->cells.face_px = (uint32_t)prom_option_whole(state, "--view-cell-px", text, 64, 2048);
         break;
     default:
-        return parse_tree(o, key, text, state);
+        return parse_measure(o, key, text, state);
     }
     return 0;
 }

@@ -201,11 +201,12 @@ static prom_status record_settings(prom_build_state *b, const char *scene, prom_
         text, sizeof text,
         "max-triangles %u, min-triangles %u, chunk-size %g, octree %s, divisions %u,%u,%u, "
         "group-radius %g, max-children %u, max-texture-px %u, up-axis %s, unit-m %g, "
-        "texture-mb %u",
+        "texture-mb %u, metric %s, ppd %g",
         o->objects.max_triangles, o->objects.min_triangles, o->objects.chunk_size,
         o->tree.octree == PROM_OCTREE_STRICT ? "strict" : "loose", o->tree.divisions[0],
         o->tree.divisions[1], o->tree.divisions[2], o->tree.group_radius, o->tree.max_children,
-        o->import.max_texture_px, up_names[o->import.up], o->import.unit_m, o->texture_mb);
+        o->import.max_texture_px, up_names[o->import.up], o->import.unit_m, o->texture_mb,
+        o->measure.metric, (double)o->measure.ppd);
     const char *slash = strrchr(scene, '/');
     prom_status status =
         prom_writer_set_meta(b->writer, "source", slash ? slash + 1 : scene, error);
@@ -300,6 +301,8 @@ static prom_build_options resolved(const prom_build_options *options)
     if (!o.import.max_texture_px) o.import.max_texture_px = 1024;
     o.objects = prom_object_options_resolved(o.objects);
     if (!o.tree.max_children) o.tree.max_children = 16;
+    if (!o.measure.metric) o.measure.metric = PROM_MEASURE_METRIC;
+    if (!(o.measure.ppd > 0.0f)) o.measure.ppd = PROM_MEASURE_PPD;
     if (!o.texture_mb) o.texture_mb = 256;
     return o;
 }

@@ -2,6 +2,7 @@
 #ifndef PROM_BUILDER_PIPELINE_H
 #define PROM_BUILDER_PIPELINE_H
 
+#include "builder/measure.h"
 #include "builder/objects.h"
 #include "builder/source.h"
 #include "builder/tree.h"
@@ -20,6 +21,7 @@ typedef struct prom_build_options {
     prom_import_options import;
     prom_object_options objects;
     prom_tree_options tree;
+    prom_measure_options measure;
     uint32_t texture_mb; // bytes of impostor pictures on the device, in MiB; 0: 256
     const char *profile; // cost profile that the content names; NULL: none
     // That the work may take, beside what the device's driver does; 0: any. It changes nothing

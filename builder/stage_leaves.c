@@ -160,7 +160,7 @@ prom_status prom_stage_leaves(prom_build_state *b, prom_error *error)
     static const prom_subject_class leaf = {PROM_UNIT_LEAF, begin, draw, amend, settled};
     uint32_t count = (uint32_t)b->objects.shapes.count;
     plan_boxes(b);
-    b->measure = prom_measure_create(b->mean_luminance);
+    b->measure = prom_measure_create(&b->options->measure, b->mean_luminance);
     b->pool = prom_pool_create();
     prom_progress progress;
     prom_progress_begin(&progress, "leaves", count);

@@ -179,6 +179,10 @@ static void settle(prom_subject *s, prom_candidate *c)
     uint32_t gaps = 0;
     for (uint32_t d = 0; d < PROM_DIRS; d++)
         if (c->result.gaps[d] > gaps) gaps = c->result.gaps[d];
+    if (mesh)
+        for (uint32_t d = 0; d < PROM_DIRS_LARGE; d++)
+            memset(c->result.accuracy.large[d], c->result.accuracy.bins[d][PROM_SIZES - 1],
+                   PROM_SIZES_LARGE);
     if (mesh && rep->error > 0) rep->near_k = fit_near(&c->result, rep->error, radius_of(s));
     if (mesh && gaps > 0) rep->max_size_px = PROM_GAP_PX * sqrtf(GAPS_SHOWN_PX / (float)gaps);
     c->kept = rep->max_size_px >= LEAST_SIZE_PX;

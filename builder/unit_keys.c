@@ -115,7 +115,8 @@ uint64_t prom_key_of_levels(const prom_build_state *b, uint32_t shape)
 static uint64_t measured(const prom_build_state *b, uint32_t prototype)
 {
     uint32_t boxed = b->boxed[prototype];
-    uint64_t h = prom_hash(&b->mean_luminance, sizeof b->mean_luminance, b->device_key);
+    const uint64_t how = prom_measure_key(b->measure);
+    uint64_t h = prom_hash(&how, sizeof how, b->device_key);
     return prom_hash(&boxed, sizeof boxed, h);
 }
 

@@ -212,7 +212,8 @@ static void accuracy_is_one_for_equal_and_falls_with_difference(void **state)
         result[i].views = &views[i];
         others[i] = &result[i];
     }
-    prom_measure *m = prom_measure_create(0.2f);
+    const prom_measure_options options = {0};
+    prom_measure *m = prom_measure_create(&options, 0.2f);
     uint16_t coverage[PROM_DIRS], shares[2][PROM_DIRS];
     for (uint32_t d = 0; d < PROM_DIRS; d++) {
         prom_measure_direction(m, 0, d, &truth, &coverage[d], others, 3);

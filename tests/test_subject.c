@@ -65,6 +65,7 @@ static int start(void **state)
 {
     (void)state;
     const float center[3] = {0, 0, 0}, half[3] = {1, 1, 1};
+    const prom_measure_options options = {0};
     prom_error error = {0};
     memset(&run, 0, sizeof run);
     run.fails_at_begin = run.fails_at_draw = run.fails_at_amend = run.stops_at_draw = PROM_NONE;
@@ -77,7 +78,7 @@ static int start(void **state)
                                    .lock = PTHREAD_MUTEX_INITIALIZER,
                                    .writer = prom_writer_create(MODEL, &error),
                                    .store = prom_store_open(MODEL, PROM_UNIT_COUNT, &error),
-                                   .measure = prom_measure_create(0.2f),
+                                   .measure = prom_measure_create(&options, 0.2f),
                                    .pool = prom_pool_create()};
     return !run.build.writer || !run.build.store;
 }

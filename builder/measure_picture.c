@@ -1,0 +1,146 @@
+#include "builder/measure_picture.h"
+
+#include "metaobj/base/math.h"
+
+#include <string.h>
+
+static uint32_t least(uint32_t a, uint32_t b)
+{
+    return a < b ? a : b;
+}
+
+static uint32_t most(uint32_t a, uint32_t b)
+{
+    return a > b ? a : b;
+}
+
+prom_part prom_part_around(prom_part a, prom_part b)
+{
+    if (!a.width) return b;
+    if (!b.width) return a;
+    prom_part all = {.x = least(a.x, b.x), .y = least(a.y, b.y)};
+    all.width = most(a.x + a.width, b.x + b.width) - all.x;
+    all.height = most(a.y + a.height, b.y + b.height) - all.y;
+    return all;
+}
+
+prom_part prom_part_reduced(prom_part part, float step)
+{
+    prom_part r = {.x = (uint32_t)((float)part.x / step),
+                   .y = (uint32_t)((float)part.y / step)};
+    r.width = (uint32_t)ceilf((float)(part.x + part.width) / step) - r.x;
+    r.height = (uint32_t)ceilf((float)(part.y + part.height) / step) - r.y;
+    return r;
+}
+
+void prom_patch_take(const uint8_t (*rgba)[4], size_t row_pixels, prom_part part,
+                     prom_patch *patch)
+{
+    float(*out)[4] = patch->pixels;
+    rgba += part.y * row_pixels + part.x;
+    for (uint32_t y = 0; y < part.height; y++, rgba += row_pixels, out += part.width)
+        for (uint32_t x = 0; x < part.width; x++) {
+            const float covered = rgba[x][3] >= 128 ? 1.0f : 0.0f;
+            for (int c = 0; c < 3; c++) out[x][c] = covered * prom_srgb8_to_linear(rgba[x][c]);
+            out[x][3] = covered;
+        }
+    patch->part = part;
+}
+
+// ---- area averages
+
+// The input pixels [first, end) of a row or column that an output pixel covers, of the first
+// and the last of them a part.
+typedef struct span {
+    uint32_t first, end;
+    float head, tail, scale;
+} span;
+
+// Of output pixel `i`, in an input of `count` pixels from `start` on.
+static span span_of(uint32_t i, float step, uint32_t start, uint32_t count)
+{
+    float from = fmaxf((float)i * step - (float)start, 0.0f);
+    float to = fminf((float)(i + 1) * step - (float)start, (float)count);
+    span s = {.first = (uint32_t)from, .end = (uint32_t)ceilf(to), .scale = 1.0f / step};
+    s.head = (float)(s.first + 1) - from;
+    s.tail = to - (float)(s.end - 1);
+    if (s.first + 1 == s.end) s.head += s.tail - 1.0f;
+    return s;
+}
+
+static float weight_in(const span *s, uint32_t i)
+{
+    return s->scale * (i == s->first ? s->head : i + 1 == s->end ? s->tail : 1.0f);
+}
+
+static void average_rows(const prom_patch *in, float step, const prom_part *part,
+                         float (*out)[4])
+{
+    for (uint32_t x = 0; x < part->width; x++) {
+        const span s = span_of(part->x + x, step, in->part.x, in->part.width);
+        for (uint32_t y = 0; y < in->part.height; y++) {
+            const float(*row)[4] = (const float(*)[4])in->pixels + (size_t)y * in->part.width;
+            float sum[4] = {0};
+            for (uint32_t i = s.first; i < s.end; i++) {
+                const float weight = weight_in(&s, i);
+                for (int c = 0; c < 4; c++) sum[c] += weight * row[i][c];
+            }
+            memcpy(out[(size_t)y * part->width + x], sum, sizeof sum);
+        }
+    }
+}
+
+static void average_columns(const float (*in)[4], const prom_part *from, float step,
+                            const prom_part *part, float (*out)[4])
+{
+    const size_t row_floats = 4 * (size_t)part->width;
+    for (uint32_t y = 0; y < part->height; y++) {
+        const span s = span_of(part->y + y, step, from->y, from->height);
+        float *sum = out[(size_t)y * part->width];
+        memset(sum, 0, row_floats * sizeof *sum);
+        for (uint32_t i = s.first; i < s.end; i++) {
+            const float weight = weight_in(&s, i), *row = in[(size_t)i * part->width];
+            for (size_t k = 0; k < row_floats; k++) sum[k] += weight * row[k];
+        }
+    }
+}
+
+void prom_patch_reduce(const prom_patch *patch, float step, float (*between)[4],
+                       prom_patch *reduced)
+{
+    reduced->part = prom_part_reduced(patch->part, step);
+    average_rows(patch, step, &reduced->part, between);
+    average_columns((const float(*)[4])between, &patch->part, step, &reduced->part,
+                    reduced->pixels);
+}
+
+// ---- over a background
+
+void prom_encoder_init(prom_encoder *encoder)
+{
+    for (int i = 0; i <= PROM_ENCODE_STEPS; i++)
+        encoder->bytes[i] = prom_linear_to_srgb8((float)i / PROM_ENCODE_STEPS);
+}
+
+static uint8_t encoded(const prom_encoder *encoder, float linear)
+{
+    return encoder->bytes[(int)(fminf(linear, 1.0f) * PROM_ENCODE_STEPS + 0.5f)];
+}
+
+void prom_patch_compose(const prom_patch *patch, const prom_encoder *encoder, float background,
+                        uint32_t pad, uint8_t (*rgba)[4])
+{
+    const uint32_t width = patch->part.width, height = patch->part.height;
+    const size_t wide = width + 2 * pad;
+    const uint8_t grey = encoded(encoder, background);
+    memset(rgba, grey, wide * (height + 2 * pad) * sizeof *rgba);
+    const float(*in)[4] = (const float(*)[4])patch->pixels;
+    for (uint32_t y = 0; y < height; y++, in += width) {
+        uint8_t(*out)[4] = rgba + (y + pad) * wide + pad;
+        for (uint32_t x = 0; x < width; x++) {
+            if (in[x][3] <= 0.0f) continue;
+            const float behind = fmaxf(1.0f - in[x][3], 0.0f) * background;
+            for (int c = 0; c < 3; c++) out[x][c] = encoded(encoder, in[x][c] + behind);
+        }
+    }
+}

@@ -1,0 +1,51 @@
+// Parts of pictures in linear light: taken from a view, brought to a smaller size by area
+// averages, and laid over a background. Private to measuring.
+#ifndef PROM_BUILDER_MEASURE_PICTURE_H
+#define PROM_BUILDER_MEASURE_PICTURE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+// A rectangle of whole pixels.
+typedef struct prom_part {
+    uint32_t x, y, width, height;
+} prom_part;
+
+// What a part of a picture shows: linear colour times coverage, and coverage.
+typedef struct prom_patch {
+    prom_part part;
+    float (*pixels)[4]; // rows from the top
+} prom_patch;
+
+static inline size_t prom_part_pixels(const prom_part *part)
+{
+    return (size_t)part->width * part->height;
+}
+
+// The least part that holds both; an empty one (width 0) counts for nothing.
+prom_part prom_part_around(prom_part a, prom_part b);
+// What a part becomes when the picture is reduced by `step` >= 1, outwards to whole pixels:
+// pixel i of the reduced picture covers [i, i + 1) * step.
+prom_part prom_part_reduced(prom_part part, float step);
+
+// Encoded pixels, rows of row_pixels, as a patch: covered where alpha is at least 128.
+void prom_patch_take(const uint8_t (*rgba)[4], size_t row_pixels, prom_part part,
+                     prom_patch *patch);
+// Area averages; nothing is outside the patch. between: room for patch->part.height rows of the
+// result. The result's pixels are there; its part is set.
+void prom_patch_reduce(const prom_patch *patch, float step, float (*between)[4],
+                       prom_patch *reduced);
+
+// Linear light to bytes, sRGB-encoded, through a table.
+#define PROM_ENCODE_STEPS 4096
+typedef struct prom_encoder {
+    uint8_t bytes[PROM_ENCODE_STEPS + 1];
+} prom_encoder;
+void prom_encoder_init(prom_encoder *encoder);
+
+// The patch over a grey of linear `background`, with `pad` pixels of that around: rows of
+// part.width + 2 * pad encoded pixels.
+void prom_patch_compose(const prom_patch *patch, const prom_encoder *encoder, float background,
+                        uint32_t pad, uint8_t (*rgba)[4]);
+
+#endif
