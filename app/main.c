@@ -16,6 +16,7 @@ static const prom_command commands[] = {
     {"walk", "X.prom", "walk through a model in a window", prom_command_walk},
     {"bench", "X.prom", "walk a path within a time per frame", prom_command_bench},
     {"calibrate", "", "measure what drawing costs here", prom_command_calibrate},
+    {"compare", "A B", "tell how different two pictures look", prom_command_compare},
     {"scene", "city|tile", "make a scene", prom_command_scene},
 };
 

@@ -1,7 +1,7 @@
 #include "app/options.h"
 
+#include "benefit/flip.h"
 #include "metaobj/base/log.h"
-#include "metaobj/model.h"
 #include "traverse/selector.h"
 
 #include <errno.h>
@@ -122,6 +122,11 @@ const prom_view_options prom_view_options_default = {
     .visibility = PROM_SEE_BOTH,
     .size_px = {1280, 720},
 };
+
+double prom_full_screen_ppd(uint32_t width_px)
+{
+    return fmax(PROM_FLIP_PPD * width_px / PROM_FLIP_SCREEN_PX, PROM_PPD_MIN);
+}
 
 const char *prom_view_path_file(const prom_view_options *view)
 {

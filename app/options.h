@@ -56,6 +56,10 @@ typedef struct prom_view_options {
     double ppd; // pixels per degree; 0: of the picture filling a screen
 } prom_view_options;
 
+// Pixels per degree of a picture that fills the screen 0.7 m wide and 0.7 m away that FLIP's
+// values are usually given for.
+double prom_full_screen_ppd(uint32_t width_px);
+
 // The path's file; NULL for an automatic one.
 const char *prom_view_path_file(const prom_view_options *view);
 

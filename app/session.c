@@ -1,7 +1,6 @@
 #include "app/session.h"
 
 #include "app/calibration.h"
-#include "benefit/flip.h"
 #include "builder/image_io.h"
 #include "metaobj/base/clock.h"
 #include "metaobj/base/log.h"
@@ -151,7 +150,7 @@ prom_status prom_session_resize(prom_session *session, const uint32_t size_px[2]
 double prom_session_ppd(const prom_session *session)
 {
     if (session->ppd > 0) return session->ppd;
-    return fmax(PROM_FLIP_PPD * session->camera.width / PROM_FLIP_SCREEN_PX, PROM_PPD_MIN);
+    return prom_full_screen_ppd(session->camera.width);
 }
 
 prom_selection prom_session_selection(const prom_session *session, const prom_view *view,
