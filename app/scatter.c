@@ -9,19 +9,28 @@ enum { WIDTH = 760, HEIGHT = 700, LEFT = 84, TOP = 74, SIDE = 556, LEGEND = LEFT
 static const char *const colours[PROM_SCATTER_GROUPS] = {"#0072b2", "#d55e00", "#009e73",
                                                          "#cc79a7"};
 
+// Up to about so many pixels the axes are linear, beyond them logarithmic.
+#define LINEAR_PX 10.0
+#define MARGIN 0.04 // of the axes, around the points
+
 typedef struct canvas {
     FILE *out;
-    double most; // of the axes, as a cube root
+    double low, high; // of both axes, on their scale
 } canvas;
+
+static double scaled(double value)
+{
+    return asinh(value / LINEAR_PX);
+}
 
 static double across(const canvas *c, double value)
 {
-    return LEFT + SIDE * (0.5 + 0.5 * cbrt(value) / c->most);
+    return LEFT + SIDE * (scaled(value) - c->low) / (c->high - c->low);
 }
 
 static double down(const canvas *c, double value)
 {
-    return TOP + SIDE * (0.5 - 0.5 * cbrt(value) / c->most);
+    return TOP + SIDE * (c->high - scaled(value)) / (c->high - c->low);
 }
 
 // Names come from files.
@@ -85,6 +94,7 @@ static void begin(FILE *out, uint32_t groups)
 
 static void put_tick(const canvas *c, double value)
 {
+    if (scaled(value) < c->low || scaled(value) > c->high) return;
     char text[32];
     double x = across(c, value), y = down(c, value);
     const char *class = value == 0 ? "axis" : "grid";
@@ -95,13 +105,11 @@ static void put_tick(const canvas *c, double value)
     put_text(c->out, LEFT - 8, y + 4, "class=\"tick\" text-anchor=\"end\"", text);
 }
 
-// At 0 and at the powers of ten, as far as they stand apart.
 static void put_axes(const canvas *c, const prom_scatter *plot)
 {
     char attributes[128];
     put_tick(c, 0);
-    for (double value = pow(10, ceil(3 * log10(c->most / 10))); cbrt(value) < c->most;
-         value *= 10) {
+    for (double value = LINEAR_PX; value < 1e12; value *= 10) {
         put_tick(c, value);
         put_tick(c, -value);
     }
@@ -136,17 +144,22 @@ static void put_legend(FILE *out, const prom_scatter *plot)
     }
 }
 
-static double greatest(const prom_scatter *plot)
+// Both axes reach over all values, 0 and the linear part.
+static canvas canvas_of(const prom_scatter *plot, FILE *out)
 {
-    double most = 1;
-    for (size_t i = 0; i < plot->count; i++)
-        most = fmax(most, fmax(fabs(plot->points[i].x), fabs(plot->points[i].y)));
-    return most;
+    double least = -LINEAR_PX, most = LINEAR_PX;
+    for (size_t i = 0; i < plot->count; i++) {
+        const prom_scatter_point *p = &plot->points[i];
+        least = fmin(least, fmin(p->x, p->y));
+        most = fmax(most, fmax(p->x, p->y));
+    }
+    double low = scaled(least), high = scaled(most), margin = MARGIN * (high - low);
+    return (canvas){out, low - margin, high + margin};
 }
 
 void prom_scatter_write(const prom_scatter *plot, FILE *out)
 {
-    const canvas c = {out, 1.05 * cbrt(greatest(plot))};
+    const canvas c = canvas_of(plot, out);
     begin(out, plot->group_count);
     put_text(out, LEFT, 32, "class=\"title\"", plot->title);
     put_text(out, LEFT, 54, "class=\"tick\"", plot->subtitle);

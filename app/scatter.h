@@ -1,6 +1,7 @@
-// A scatter plot as SVG: two quantities that should be equal, in groups of a colour and a
-// marker each. Both axes are signed cube roots, so that small values of either sign can be seen
-// beside large ones, and equal values lie on the diagonal, which is drawn.
+// A scatter plot as SVG: two quantities in pixels that should be equal, in groups of a colour
+// and a marker each. Both axes have one scale, on which small values of either sign can be seen
+// beside large ones: asinh(x / 10), linear up to 10 pixels, then logarithmic. Equal values lie
+// on the diagonal, which is drawn.
 #ifndef PROM_APP_SCATTER_H
 #define PROM_APP_SCATTER_H
 

@@ -1,0 +1,152 @@
+// LINK: prom_metaobj PkgConfig::JANSSON
+// NEEDS: promenade
+//
+// The swap test on a small city: finite numbers, the same on every run, in the report, the
+// table and the plot. Skips where there is no GL.
+#include "tests/run_program.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <jansson.h>
+
+#define VIEWS 6
+#define SWAPS 5
+#define BENCH                                                                                  \
+    "bench city.prom --path city.path --frames 120 --warmup 0 --quality-frames 0 "             \
+    "--budget-ms 1.5 --selector greedy --resolution 160,90 --profile p.json --quiet "
+
+static program_run run;
+static bool no_device;
+
+static void expect(const char *arguments, int code)
+{
+    run_program(&run, arguments);
+    if (run.code != code) fprintf(stderr, "promenade %s: %s\n", arguments, run.err);
+    assert_int_equal(run.code, code);
+}
+
+static int make_model(void **state)
+{
+    (void)state;
+    run_program(&run, "calibrate --effort 1 --resolution 160,90 -o p.json --quiet");
+    no_device = run.code == 3;
+    if (no_device) {
+        fprintf(stderr, "skipped: %s", run.err);
+        return 0;
+    }
+    assert_int_equal(run.code, 0);
+    expect("scene city --seed 7 --size 1 --detail 1 --styles 2 -o city.glb --path city.path",
+           0);
+    expect("build city.glb -o city.prom --quiet", 0);
+    return 0;
+}
+
+#define NEED_DEVICE()                                                                          \
+    if (no_device) skip()
+
+static json_t *swap_of(json_t *report)
+{
+    json_t *runs = json_object_get(report, "runs");
+    return json_object_get(json_array_get(runs, 0), "swap");
+}
+
+static double number(json_t *object, const char *key)
+{
+    json_t *value = json_object_get(object, key);
+    assert_true(json_is_number(value));
+    return json_number_value(value);
+}
+
+// Every swap is of one kind, and of a leaf or a cluster.
+static void check_groups(json_t *groups, double swaps)
+{
+    const char *name;
+    json_t *group;
+    double sum = 0;
+    json_object_foreach(groups, name, group) sum += number(group, "swaps");
+    assert_true(sum == swaps);
+}
+
+static double check_report(void)
+{
+    json_t *report = json_load_file("r.json", 0, NULL), *swap = swap_of(report);
+    double swaps = number(swap, "swaps");
+    assert_true(number(swap, "frames") == VIEWS);
+    assert_true(swaps > VIEWS && swaps <= VIEWS * SWAPS);
+    assert_true(fabs(number(swap, "spearman")) <= 1);
+    assert_true(fabs(number(swap, "spearman_selector")) <= 1);
+    assert_true(isfinite(number(swap, "slope")));
+    check_groups(json_object_get(swap, "kinds"), swaps);
+    check_groups(json_object_get(swap, "nodes"), swaps);
+    assert_non_null(json_object_get(json_object_get(swap, "kinds"), "open"));
+    json_decref(report);
+    return swaps;
+}
+
+// Rows with all columns and pixels to compare; at least one change is seen.
+static void check_table(char *text, double swaps)
+{
+    assert_true(count_lines(text) == swaps + 1);
+    assert_int_equal(strncmp(text, "frame,node,name,cluster,kind_from,kind_to,", 42), 0);
+    double changed = 0;
+    strtok(text, "\n");
+    for (char *line; (line = strtok(NULL, "\n"));) {
+        double px, predicted, believed, measured;
+        char *last = line;
+        for (int i = 0; i < 9; i++) last = strchr(last, ',') + 1; // the name has no comma
+        assert_int_equal(sscanf(last, "%lf,%lf,%lf,%lf", &px, &predicted, &believed, &measured),
+                         4);
+        assert_true(px >= 16 && px <= 160 * 90);
+        assert_true(isfinite(predicted) && isfinite(believed) && isfinite(measured));
+        assert_true(fabs(predicted) <= px && fabs(measured) <= 160 * 90);
+        changed += fabs(measured);
+    }
+    assert_true(changed > 1);
+}
+
+static void swaps_are_the_same_on_every_run(void **state)
+{
+    (void)state;
+    NEED_DEVICE();
+    static char tables[2][65536], plots[2][65536];
+    for (int i = 0; i < 2; i++) {
+        expect(BENCH "--swap-test 6 --swaps 5 --swap-csv s.csv --swap-plot s.svg "
+                     "--report r.json",
+               0);
+        assert_non_null(strstr(run.out, "\nswap "));
+        slurp("s.csv", tables[i], sizeof tables[i]);
+        slurp("s.svg", plots[i], sizeof plots[i]);
+    }
+    double swaps = check_report();
+    assert_string_equal(tables[0], tables[1]);
+    assert_string_equal(plots[0], plots[1]);
+    check_table(tables[0], swaps);
+    assert_int_equal(strncmp(plots[0], "<svg ", 5), 0);
+    assert_non_null(strstr(plots[0], "Spearman"));
+    assert_non_null(strstr(plots[0], "</svg>\n"));
+}
+
+static void files_need_the_test(void **state)
+{
+    (void)state;
+    NEED_DEVICE();
+    expect("bench city.prom --swap-csv s.csv", 1);
+    assert_non_null(strstr(run.err, "--swap-test"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(swaps_are_the_same_on_every_run),
+        cmocka_unit_test(files_need_the_test),
+    };
+    enter_scratch();
+    int failed = cmocka_run_group_tests(tests, make_model, NULL);
+    leave_scratch();
+    return failed;
+}
