@@ -1,8 +1,7 @@
 // LINK: prom_traverse prom_benefit prom_metaobj
-// Times the selectors on a large random tree and says how far their cuts are from the bound;
-// times the edge-blur metric. Usage: bench_select [LEAVES] [FRAMES]
+// Times the selectors on a large random tree and says how far their cuts are from the bound.
+// Usage: bench_select [LEAVES] [FRAMES]
 #include "../random_model.h"
-#include "benefit/edge_blur.h"
 #include "metaobj/base/clock.h"
 #include "traverse/evaluate.h"
 
@@ -125,34 +124,6 @@ static void time_selectors(uint32_t leaves, int frames)
     prom_model_finish(&m);
 }
 
-static void time_metric(uint32_t size)
-{
-    size_t pixels = (size_t)size * size;
-    float *grey = prom_alloc(pixels, sizeof *grey), *other = prom_alloc(pixels, sizeof *other);
-    float *features = prom_alloc(4 * pixels, sizeof *features);
-    float *scratch = prom_alloc(prom_edge_blur_scratch(size, size), sizeof *scratch);
-    uint64_t seed = 3;
-    for (size_t i = 0; i < pixels; i++)
-        grey[i] = random_unit(&seed), other[i] = random_unit(&seed);
-    int rounds = (int)(2e7 / (double)pixels) + 1;
-    double start = prom_clock_ms();
-    for (int i = 0; i < rounds; i++)
-        prom_edge_blur_features(i % 2 ? grey : other, size, size, features, scratch);
-    double ms = prom_clock_ms() - start;
-    prom_edge_blur_features(grey, size, size, features + 2 * pixels, scratch);
-    start = prom_clock_ms();
-    for (int i = 0; i < rounds; i++)
-        prom_edge_blur_error(features, features + 2 * pixels, size, size, scratch);
-    double error_ms = prom_clock_ms() - start;
-    double mega = (double)pixels * rounds / 1e6;
-    printf("edge-blur %4u x %-4u features %6.0f Mpixel/s, error %6.0f Mpixel/s\n", size, size,
-           1e3 * mega / ms, 1e3 * mega / error_ms);
-    prom_free(grey);
-    prom_free(other);
-    prom_free(features);
-    prom_free(scratch);
-}
-
 int main(int argc, char **argv)
 {
     long leaves = argc > 1 ? strtol(argv[1], NULL, 10) : 3000;
@@ -162,6 +133,5 @@ int main(int argc, char **argv)
         return 1;
     }
     time_selectors((uint32_t)leaves, (int)frames);
-    for (uint32_t size = 16; size <= 256; size *= 2) time_metric(size);
     return 0;
 }
