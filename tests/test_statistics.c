@@ -121,6 +121,40 @@ static void quality_is_of_the_compared_frames(void **state)
     NEAR(s.hidden_nodes, 1.0 / 3);
 }
 
+static void ranks_correlate(void **state)
+{
+    (void)state;
+    const double rising[5] = {1, 2, 3, 4, 5}, powers[5] = {-1e9, 0, 1e-9, 7, 1e30};
+    const double falling[5] = {5, 4, 3, 2, 1};
+    NEAR(prom_spearman(rising, powers, 5), 1);
+    NEAR(prom_spearman(rising, falling, 5), -1);
+    // Without ties 1 - 6 * sum d^2 / (n (n^2 - 1)); d = 1, 1, 0, 1, 1.
+    const double mixed[5] = {2, 1, 3, 6, 4.5}, other[5] = {1, 2, 3, 4, 6};
+    NEAR(prom_spearman(mixed, other, 5), 1 - 6.0 * (1 + 1 + 1 + 1) / (5 * 24));
+}
+
+// Ranks 1, 2.5, 2.5, 4 and 1, 3, 2, 4, whose Pearson correlation is 4.5 / sqrt(4.5 * 5).
+static void ties_share_their_ranks(void **state)
+{
+    (void)state;
+    const double x[4] = {10, 20, 20, 30}, y[4] = {1, 3, 2, 4};
+    NEAR(prom_spearman(x, y, 4), 4.5 / sqrt(4.5 * 5));
+    NEAR(prom_spearman(y, x, 4), 4.5 / sqrt(4.5 * 5));
+    NEAR(prom_spearman(x, x, 4), 1);
+    const double flat[4] = {7, 7, 7, 7};
+    assert_true(isnan(prom_spearman(x, flat, 4)));
+    assert_true(isnan(prom_spearman(x, y, 1)) && isnan(prom_spearman(x, y, 0)));
+}
+
+static void the_slope_goes_through_the_origin(void **state)
+{
+    (void)state;
+    const double x[3] = {1, 2, -3}, y[3] = {2, 4, -6}, z[3] = {3, 4, -6};
+    NEAR(prom_slope(x, y, 3), 2);
+    NEAR(prom_slope(x, z, 3), (3.0 + 8 + 18) / 14);
+    assert_true(isnan(prom_slope(x, y, 0)));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -131,6 +165,9 @@ int main(void)
         cmocka_unit_test(predictions_are_compared_with_the_drawing),
         cmocka_unit_test(comparisons_count_where_they_were_made),
         cmocka_unit_test(quality_is_of_the_compared_frames),
+        cmocka_unit_test(ranks_correlate),
+        cmocka_unit_test(ties_share_their_ranks),
+        cmocka_unit_test(the_slope_goes_through_the_origin),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
