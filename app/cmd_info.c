@@ -1,24 +1,52 @@
 // promenade info: what a model holds.
 #include "app/command.h"
-#include "app/model_facts.h"
+#include "app/info_object.h"
+#include "app/info_report.h"
+#include "app/info_sheet.h"
+#include "app/info_tables.h"
 #include "app/options.h"
 #include "app/output.h"
 
 #include <inttypes.h>
 #include <stdio.h>
-#include <sys/stat.h>
+
+#define LISTED 8 // other objects that a name means
 
 typedef struct info_options {
-    const char *model;
+    const char *model, *object, *tables, *sheet_path;
+    prom_sheet_options sheet;
     bool json;
 } info_options;
 
-enum { KEY_JSON = 0x1000 };
+enum { KEY_JSON = 0x1000, KEY_OBJECT, KEY_TABLES, KEY_SHEET, KEY_SIZE_PX, KEY_DIRECTIONS };
 
 static const struct argp_option options[] = {
     {"json", KEY_JSON, NULL, 0, "Print JSON instead of text", 0},
+    {"tables", KEY_TABLES, "FILE", 0,
+     "Write the accuracy of each representation from each direction at each size (CSV)", 1},
+    {"object", KEY_OBJECT, "NAME", 0,
+     "For --sheet and --tables: an object by its name or a pattern of names, or #N, prototype "
+     "N "
+     "(clusters have no names)",
+     1},
+    {"sheet", KEY_SHEET, "FILE", 0,
+     "Draw how the object's representations look and where they err, with their accuracies "
+     "(PNG)",
+     1},
+    {"size-px", KEY_SIZE_PX, "PX", 0,
+     "For --sheet: size of the object in the pictures, 8 to 128; the nearest that is stored "
+     "(128)",
+     1},
+    {"directions", KEY_DIRECTIONS, "N", 0, "For --sheet: directions, 1 to 66 (9)", 1},
     {0},
 };
+
+static void check(const info_options *o, const struct argp_state *state)
+{
+    if (o->sheet_path && !o->object) argp_error(state, "--sheet: name the --object");
+    if (o->object && !o->sheet_path && !o->tables)
+        argp_error(state, "--object: give --sheet or --tables too");
+}
 
 static error_t parse(int key, char *text, struct argp_state *state)
 {
@@ -26,6 +54,27 @@ static error_t parse(int key, char *text, struct argp_state *state)
     switch (key) {
     case KEY_JSON:
         o->json = true;
+        break;
+    case KEY_OBJECT:
+        o->object = text;
+        break;
+    case KEY_TABLES:
+        o->tables = text;
+        break;
+    case KEY_SHEET:
+        o->sheet_path = text;
+        break;
+    case KEY_SIZE_PX:
+        o->sheet.size_px = (float)prom_option_number(state, "--size-px", text, PROM_SIZE_MIN_PX,
+                                                     PROM_SIZE_MAX_PX);
+        break;
+    case KEY_DIRECTIONS:
+        o->sheet.directions =
+            (uint32_t)prom_option_whole(state, "--directions", text, 1, PROM_DIRS);
+        break;
+    case ARGP_KEY_END:
+        prom_option_model(key, text, state, &o->model);
+        check(o, state);
         break;
     default:
         return prom_option_model(key, text, state, &o->model);
@@ -39,302 +88,87 @@ static const struct argp argp = {
     .options = options,
     .parser = parse,
     .args_doc = "X.prom",
-    .doc = "Tell what a model holds and how it was made.",
+    .doc =
+        "Tell what a model holds and how it was made.\v"
+        "With --tables or --sheet, only what was written is told, unless --json asks for all.",
     .children = children,
 };
 
-typedef struct facts {
-    const char *path;
-    prom_container *container;
-    prom_model_facts model;
-    uint64_t file_bytes, content_hash;
-    uint32_t cells;
-    uint64_t cell_bytes; // in the file
-    json_t *stages;      // array of {name, ms, content}
-} facts;
-
-static void add_stage(void *user, const char *name, uint64_t content_hash, double ms)
+static prom_status report(const info_options *o, prom_container *container,
+                          const prom_model *model, prom_error *error)
 {
-    char hash[17];
-    snprintf(hash, sizeof hash, "%016" PRIx64, content_hash);
-    json_t *stage = json_pack("{s:o, s:o, s:s}", "name", prom_json_text(name), "ms",
-                              prom_json_number(ms), "content", hash);
-    json_array_append_new(user, stage);
-}
-
-static prom_status gather(facts *f, prom_error *error)
-{
-    prom_model model = {0};
-    f->container = prom_container_open(f->path, error);
-    if (!f->container) return error->status;
-    prom_status status = prom_container_load_model(f->container, &model, error);
-    if (status) return status;
-    prom_view_cells cells;
-    status = prom_container_read_view_cells(f->container, &model, &cells, error);
-    if (!status) prom_model_facts_of(&model, &cells, &f->model);
-    f->cells = cells.cell_count;
-    f->cell_bytes = prom_container_view_cell_bytes(f->container);
-    prom_view_cells_finish(&cells);
-    prom_model_finish(&model);
-    if (!status) status = prom_container_content_hash(f->container, &f->content_hash, error);
-    if (!status) status = prom_container_stages(f->container, add_stage, f->stages, error);
-    struct stat st = {0};
-    stat(f->path, &st);
-    f->file_bytes = (uint64_t)st.st_size;
+    prom_info_facts facts;
+    prom_status status = prom_info_gather(&facts, o->model, container, model, error);
+    if (!status && o->json)
+        status = prom_output_print_json(prom_info_json(&facts), error);
+    else if (!status)
+        prom_info_print(&facts);
+    prom_info_finish(&facts);
     return status;
 }
 
-// ---- JSON
-
-static void set(json_t *object, const char *key, json_t *value)
+static prom_status write_tables(const info_options *o, const prom_model *model,
+                                const prom_node_list *nodes, prom_error *error)
 {
-    json_object_set_new(object, key, value);
+    uint64_t rows;
+    prom_status status =
+        prom_info_write_tables(model, o->object ? nodes : NULL, o->tables, &rows, error);
+    if (!status && !o->json) printf("%s: %" PRIu64 " rows\n", o->tables, rows);
+    return status;
 }
 
-static void set_count(json_t *object, const char *key, uint64_t count)
+static void print_others(const prom_model *model, const prom_node_list *nodes)
 {
-    set(object, key, json_integer((json_int_t)count));
-}
-
-// The builder's counts, {} if the file has none.
-static json_t *found_json(const facts *f)
-{
-    const char *text = prom_container_meta(f->container, "found");
-    json_t *found = text ? json_loads(text, 0, NULL) : NULL;
-    if (!json_is_object(found)) {
-        json_decref(found);
-        found = json_object();
+    for (size_t i = 1; i < nodes->count && i <= LISTED; i++) {
+        char *title = prom_object_title(model, nodes->data[i]);
+        printf("%s%s", i > 1 ? ", " : "the name also means ", title);
+        prom_free(title);
     }
-    return found;
+    if (nodes->count > LISTED + 1) printf(" and %zu more", nodes->count - LISTED - 1);
+    if (nodes->count > 1) putchar('\n');
 }
 
-static json_t *meta_json(const facts *f, const char *key)
+static prom_status write_sheet(const info_options *o, prom_container *container,
+                               const prom_model *model, const prom_node_list *nodes,
+                               prom_error *error)
 {
-    const char *text = prom_container_meta(f->container, key);
-    return text ? prom_json_text(text) : json_null();
+    prom_status status = prom_info_write_sheet(container, model, nodes->data[0], &o->sheet,
+                                               o->sheet_path, error);
+    if (status || o->json) return status;
+    char *title = prom_object_title(model, nodes->data[0]);
+    printf("%s: %s\n", o->sheet_path, title);
+    prom_free(title);
+    print_others(model, nodes);
+    return PROM_OK;
 }
 
-static json_t *nodes_json(const prom_model_facts *m)
+static prom_status run(const info_options *o, prom_container *container,
+                       const prom_model *model, prom_error *error)
 {
-    json_t *nodes = json_object(), *levels = json_array();
-    for (uint32_t l = 0; l < m->levels; l++)
-        json_array_append_new(levels, json_integer(m->nodes_by_level[l]));
-    set_count(nodes, "leaves", m->leaves);
-    set_count(nodes, "objects", m->object_leaves);
-    set_count(nodes, "chunks", m->surface_leaves);
-    set_count(nodes, "blended", m->blended_leaves);
-    set_count(nodes, "clusters", m->clusters);
-    set_count(nodes, "backdrops", m->backdrops);
-    set_count(nodes, "most_children", m->most_children);
-    set(nodes, "by_level", levels);
-    return nodes;
-}
-
-static json_t *prototypes_json(const prom_model_facts *m)
-{
-    json_t *json = json_object();
-    set_count(json, "leaves", m->leaf_prototypes);
-    set_count(json, "clusters", m->cluster_prototypes);
-    set_count(json, "placed_twice_or_more", m->shared_prototypes);
-    return json;
-}
-
-static json_t *reps_json(const prom_model_facts *m)
-{
-    json_t *json = json_object();
-    for (uint32_t k = 0; k < PROM_REP_KIND_COUNT; k++) {
-        json_t *kind = json_object();
-        set_count(kind, "leaf", m->reps[k].leaf);
-        set_count(kind, "cluster", m->reps[k].cluster);
-        set_count(kind, "triangles", m->reps[k].triangles);
-        set(json, prom_rep_kind_name(k), kind);
-    }
-    return json;
-}
-
-static json_t *textures_json(const prom_model_facts *m)
-{
-    json_t *json = json_object();
-    for (uint32_t k = 0; k < PROM_TEXTURE_KIND_COUNT; k++) {
-        json_t *kind = json_object();
-        set_count(kind, "count", m->textures[k].count);
-        set_count(kind, "bytes", m->textures[k].bytes);
-        set(json, prom_texture_kind_name(k), kind);
-    }
-    return json;
-}
-
-static json_t *cells_json(const facts *f)
-{
-    json_t *json = json_object();
-    set_count(json, "count", f->cells);
-    set(json, "size", prom_json_number(f->model.cell_size));
-    set_count(json, "bytes", f->cell_bytes);
-    set(json, "mean_shown", prom_json_number(f->model.cell_shows));
-    return json;
-}
-
-static json_t *tables_json(const prom_model_facts *m)
-{
-    json_t *json = json_object();
-    for (int t = 0; t < PROM_FACT_TABLES; t++) {
-        json_t *table = json_object();
-        set_count(table, "rows", m->tables[t].rows);
-        set_count(table, "bytes", m->tables[t].bytes);
-        set(json, m->tables[t].name, table);
-    }
-    return json;
-}
-
-static json_t *to_json(const facts *f)
-{
-    const prom_model_facts *m = &f->model;
-    char hash[17];
-    snprintf(hash, sizeof hash, "%016" PRIx64, f->content_hash);
-    json_t *json = json_object();
-    set(json, "model", prom_json_text(f->path));
-    set_count(json, "file_bytes", f->file_bytes);
-    set(json, "content", json_string(hash));
-    set(json, "source", meta_json(f, "source"));
-    set(json, "settings", meta_json(f, "settings"));
-    set(json, "device", meta_json(f, "device"));
-    set(json, "found", found_json(f));
-    set_count(json, "triangles", m->triangles);
-    set(json, "size",
-        json_pack("[o, o, o]", prom_json_number(m->size[0]), prom_json_number(m->size[1]),
-                  prom_json_number(m->size[2])));
-    set(json, "nodes", nodes_json(m));
-    set(json, "prototypes", prototypes_json(m));
-    set(json, "representations", reps_json(m));
-    set(json, "textures", textures_json(m));
-    set_count(json, "materials", m->materials);
-    set(json, "view_cells", cells_json(f));
-    set(json, "tables", tables_json(m));
-    set(json, "stages", json_incref(f->stages));
-    return json;
-}
-
-// ---- text
-
-static double mib(uint64_t bytes)
-{
-    return (double)bytes / (1 << 20);
-}
-
-// Texts of the file without what could steer a terminal; free it.
-static char *plain(const char *text)
-{
-    char *copy = prom_strdup(text ? text : "");
-    prom_text_make_plain(copy);
-    return copy;
-}
-
-static void print_meta(const facts *f, const char *label, const char *key)
-{
-    const char *text = prom_container_meta(f->container, key);
-    char *value = plain(text);
-    if (text) printf("%-16s %s\n", label, value);
-    prom_free(value);
-}
-
-static void print_found(const facts *f)
-{
-    json_t *found = found_json(f), *value;
-    const char *key, *comma = "";
-    if (json_object_size(found)) printf("%-16s ", "import found");
-    json_object_foreach(found, key, value)
-    {
-        if (!json_is_integer(value)) continue;
-        printf("%s%s %" JSON_INTEGER_FORMAT, comma, key, json_integer_value(value));
-        comma = ", ";
-    }
-    if (*comma) putchar('\n');
-    json_decref(found);
-}
-
-static void print_tree(const prom_model_facts *m)
-{
-    printf("%-16s %" PRIu64 " (every instance counted)\n", "triangles", m->triangles);
-    printf("%-16s %g x %g x %g\n", "size", m->size[0], m->size[1], m->size[2]);
-    printf("%-16s %u leaves (%u objects, %u surface chunks, %u blended), %u clusters, "
-           "%u backdrops\n",
-           "nodes", m->leaves, m->object_leaves, m->surface_leaves, m->blended_leaves,
-           m->clusters, m->backdrops);
-    printf("%-16s", "nodes by level");
-    for (uint32_t l = 0; l < m->levels; l++) printf(" %u", m->nodes_by_level[l]);
-    printf("\n%-16s %u\n", "most children", m->most_children);
-    printf("%-16s %u of leaves, %u of clusters; %u placed twice or more\n", "prototypes",
-           m->leaf_prototypes, m->cluster_prototypes, m->shared_prototypes);
-}
-
-static void print_cells(const facts *f)
-{
-    if (f->cells)
-        printf("%-16s %u of size %g, %.2f MiB; one shows %.0f %% of %u leaves on average\n",
-               "view cells", f->cells, f->model.cell_size, mib(f->cell_bytes),
-               100 * f->model.cell_shows, f->model.leaves);
-    else
-        printf("%-16s none\n", "view cells");
-}
-
-static void print_bulk(const prom_model_facts *m)
-{
-    printf("\n%-16s %10s %10s %12s\n", "representation", "of leaves", "clusters", "triangles");
-    for (uint32_t k = 0; k < PROM_REP_KIND_COUNT; k++)
-        printf("%-16s %10u %10u %12" PRIu64 "\n", prom_rep_kind_name(k), m->reps[k].leaf,
-               m->reps[k].cluster, m->reps[k].triangles);
-    printf("\n%-16s %10s %10s\n", "textures", "count", "MiB");
-    for (uint32_t k = 0; k < PROM_TEXTURE_KIND_COUNT; k++)
-        printf("%-16s %10u %10.2f\n", prom_texture_kind_name(k), m->textures[k].count,
-               mib(m->textures[k].bytes));
-    printf("\n%-16s %10s %10s\n", "table", "rows", "MiB loaded");
-    for (int t = 0; t < PROM_FACT_TABLES; t++)
-        printf("%-16s %10" PRIu64 " %10.2f\n", m->tables[t].name, m->tables[t].rows,
-               mib(m->tables[t].bytes));
-}
-
-static void print_stages(const json_t *stages)
-{
-    size_t i;
-    json_t *stage;
-    double all = 0;
-    printf("\n%-16s %10s\n", "stage", "seconds");
-    json_array_foreach(stages, i, stage)
-    {
-        double ms = json_number_value(json_object_get(stage, "ms"));
-        all += ms;
-        char *name = plain(json_string_value(json_object_get(stage, "name")));
-        printf("%-16s %10.2f\n", name, ms / 1000);
-        prom_free(name);
-    }
-    printf("%-16s %10.2f\n", "all", all / 1000);
-}
-
-static void print_text(const facts *f)
-{
-    printf("%-16s %s, %.2f MiB\n", "model", f->path, mib(f->file_bytes));
-    printf("%-16s %016" PRIx64 "\n", "content", f->content_hash);
-    print_meta(f, "source", "source");
-    print_meta(f, "settings", "settings");
-    print_meta(f, "device", "device");
-    print_found(f);
-    print_tree(&f->model);
-    print_cells(f);
-    print_bulk(&f->model);
-    print_stages(f->stages);
+    prom_node_list nodes = {0};
+    prom_status status = PROM_OK;
+    if (o->object) status = prom_find_objects(model, o->object, &nodes, error);
+    if (!status && o->tables) status = write_tables(o, model, &nodes, error);
+    if (!status && o->sheet_path) status = write_sheet(o, container, model, &nodes, error);
+    if (!status && (o->json || (!o->tables && !o->sheet_path)))
+        status = report(o, container, model, error);
+    prom_array_finish(&nodes);
+    return status;
 }
 
 prom_status prom_command_info(int argc, char **argv, prom_error *error)
 {
-    info_options o = {0};
+    info_options o = {.sheet = {.size_px = PROM_SIZE_MAX_PX, .directions = 9}};
     argp_parse(&argp, argc, argv, 0, NULL, &o);
-    facts f = {.path = o.model, .stages = json_array()};
-    prom_status status = gather(&f, error);
-    if (!status && o.json)
-        status = prom_output_print_json(to_json(&f), error);
-    else if (!status)
-        print_text(&f);
-    prom_container_close(f.container);
-    json_decref(f.stages);
+    prom_command_files files = {{o.model}, {&o.tables, &o.sheet_path}};
+    prom_status status = prom_outputs_check(&files, error);
+    if (status) return status;
+    prom_container *container = prom_container_open(o.model, error);
+    if (!container) return error->status;
+    prom_model model;
+    status = prom_container_load_model(container, &model, error);
+    if (!status) status = run(&o, container, &model, error);
+    prom_model_finish(&model);
+    prom_container_close(container);
     return status;
 }
