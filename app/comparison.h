@@ -5,7 +5,7 @@
 #define PROM_APP_COMPARISON_H
 
 #include "app/session.h"
-#include "benefit/flip.h"
+#include "benefit/metric.h"
 
 // What is to be found out; flags.
 typedef enum prom_compare {
@@ -28,7 +28,7 @@ typedef struct prom_difference {
 // One of two pictures: of the cut, or of full detail.
 typedef struct prom_compared {
     uint8_t *rgba;
-    float *features; // of `edge-blur`, with accuracy only
+    float *features; // of the metric at work
     uint32_t *px;    // visible pixels per node, with quality only
 } prom_compared;
 
@@ -37,15 +37,14 @@ typedef struct prom_comparison {
     prom_cut cut; // of full detail
     prom_target *target;
     prom_compared truth, shown;
-    float *plane;   // a float a pixel: a grey picture, or the errors
-    float *scratch; // of `edge-blur`
+    prom_metric *edge_blur, *flip;
+    float *errors; // of each pixel
     uint32_t *ids;
     float *node_accuracy;
-    prom_flip *flip;
 } prom_comparison;
 
-// wanted: all that will be asked for; ppd: pixels per degree, for quality. On failure there is
-// still prom_comparison_finish to call.
+// wanted: all that will be asked for; ppd: pixels per degree. On failure there is still
+// prom_comparison_finish to call.
 prom_status prom_comparison_init(prom_comparison *comparison, const prom_session *session,
                                  unsigned wanted, double ppd, prom_error *error);
 void prom_comparison_finish(prom_comparison *comparison); // {0} is allowed

@@ -15,8 +15,9 @@ struct prom_metric {
 };
 
 // In the order of the help text.
-static const prom_metric_kind *const kinds[] = {&prom_metric_ssim, &prom_metric_rmse,
-                                                &prom_metric_sobel, &prom_metric_edge_blur};
+static const prom_metric_kind *const kinds[] = {&prom_metric_flip, &prom_metric_ssim,
+                                                &prom_metric_rmse, &prom_metric_sobel,
+                                                &prom_metric_edge_blur};
 
 size_t prom_metric_count(void)
 {
