@@ -148,7 +148,12 @@ std::string read_picture(job &j)
         uint64_t(p.width) * p.height > PROM_PICTURE_PIXELS_MAX)
         return "its display window is too large";
     j.file->left_out = uint32_t(spec.nchannels - j.map.count - (j.map.alpha >= 0));
-    return read_values(j);
+    std::string why = read_values(j);
+    if (why.empty() && format == "webp" && j.file->transparent)
+        return "its reader multiplies the colours of a transparent WebP by alpha; convert it "
+               "to "
+               "PNG";
+    return why;
 }
 
 prom_status decode(const prom_bytes &bytes, const char *path, prom_picture_file *file,

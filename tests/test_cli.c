@@ -23,7 +23,7 @@ static void expect(const char *arguments, int code)
 }
 
 static const char *const commands[] = {"build",     "info",       "shot",       "walk", "bench",
-                                       "calibrate", "scene city", "scene gallery", "scene tile", NULL};
+                                       "calibrate", "compare", "scene city", "scene gallery", "scene tile", NULL};
 
 static void help_goes_to_stdout(void **state)
 {
@@ -121,6 +121,12 @@ static const char *const wrong[][2] = {
     {"walk a.prom --frames 0", "--frames"},
     {"walk a.prom --budget-ms 0", "--budget-ms"},
     {"walk a.prom --selector best", "greedy"},
+    {"compare a.png", "second picture"},
+    {"compare a.png b.png c.png", "c.png"},
+    {"compare a.png b.png --metric best", "edge-blur"},
+    {"compare a.png b.png --metric all --map m.png", "one metric"},
+    {"compare a.png b.png --ppd 0.5", "--ppd"},
+    {"compare a.png b.png --threshold -1", "--threshold"},
     {"calibrate --effort 4", "--effort"},
     {"calibrate here", "here"},
     {"scene city", "--output"},
