@@ -106,6 +106,7 @@ static void set_found(json_t *run, const prom_run_facts *f, const prom_run_stati
     set(run, "accuracy", accuracy_json(t));
     set(run, "quality", quality_json(t, prom_session_ppd(f->session)));
     set(run, "swap", f->swap ? prom_swap_json(f->swap) : json_null());
+    set(run, "oracle", f->oracle ? prom_oracle_json(f->oracle) : json_null());
     set(run, "start_s", prom_json_number(f->session->start_s));
     set(run, "calibration_s", prom_json_number(f->session->calibration_s));
     set(run, "memory_mb", pair_json("start", r->memory_start_mb, "end", r->memory_end_mb));
@@ -207,6 +208,7 @@ void prom_bench_print(const prom_run_facts *facts)
                100 * t.loss_share, 100 * t.hidden_cost, 100 * t.hidden_nodes);
     }
     if (facts->swap) prom_swap_print(facts->swap);
+    if (facts->oracle) prom_oracle_print(facts->oracle);
     printf("start      %.1f s, memory %.0f MiB, at the end %.0f\n", facts->session->start_s,
            r->memory_start_mb, r->memory_end_mb);
 }

@@ -3,6 +3,7 @@
 #define PROM_APP_BENCH_REPORT_H
 
 #include "app/frame_loop.h"
+#include "app/oracle.h"
 #include "app/output.h"
 #include "app/swap_test.h"
 
@@ -11,6 +12,7 @@ typedef struct prom_run_facts {
     const prom_loop_options *options;
     const prom_loop_result *result;
     const prom_swap_result *swap; // NULL: not asked for
+    const prom_oracle_result *oracle;
     const char *scene, *path;     // as given on the command line
 } prom_run_facts;
 
@@ -26,7 +28,7 @@ typedef struct prom_run_facts {
 //   holes: frames, mean, max, as a share of the covered pixels; null if not asked for
 //   accuracy: frames, mean, min of the pictures; predicted: the mean that the selector expected
 //     of the same frames; null if not asked for
-//   swap: see app/swap_report.h; null if not asked for
+//   swap: see app/swap_report.h; oracle: see app/oracle.h; null if not asked for
 //   start_s, calibration_s, memory_mb: start, end
 json_t *prom_bench_json(const prom_run_facts *facts);
 // One row a frame, units in the header; holes and accuracy are empty where a frame was not

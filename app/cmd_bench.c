@@ -10,6 +10,7 @@
 #define AUTO_FRAMES 300
 #define QUALITY_FRAMES 20
 #define SWAPS 4
+#define ORACLE_FRAMES 5
 
 typedef struct bench_options {
     prom_view_options view;
@@ -17,6 +18,7 @@ typedef struct bench_options {
     const char *model, *report, *csv;
     uint32_t swap_frames, swaps;
     const char *swap_csv, *swap_plot;
+    uint32_t oracle_tries, oracle_frames;
 } bench_options;
 
 enum {
@@ -34,6 +36,8 @@ enum {
     KEY_SWAPS,
     KEY_SWAP_CSV,
     KEY_SWAP_PLOT,
+    KEY_ORACLE,
+    KEY_ORACLE_FRAMES,
 };
 
 static const struct argp_option options[] = {
@@ -69,6 +73,12 @@ static const struct argp_option options[] = {
     {"swap-csv", KEY_SWAP_CSV, "FILE", 0, "With --swap-test: write one row a swap", 2},
     {"swap-plot", KEY_SWAP_PLOT, "FILE.svg", 0,
      "With --swap-test: draw predicted against measured change", 2},
+    {"oracle", KEY_ORACLE, "N", 0,
+     "After the walk, in some of its views try N cuts of no more predicted cost (1000, say), "
+     "and "
+     "report the mean FLIP of the best beside that of the selector's",
+     2},
+    {"oracle-frames", KEY_ORACLE_FRAMES, "K", 0, "With --oracle: views to try in (5)", 2},
     {0},
 };
 
@@ -123,6 +133,13 @@ static error_t parse(int key, char *text, struct argp_state *state)
         break;
     case KEY_SWAP_PLOT:
         o->swap_plot = text;
+        break;
+    case KEY_ORACLE:
+        o->oracle_tries = (uint32_t)prom_option_whole(state, "--oracle", text, 1, 10000000);
+        break;
+    case KEY_ORACLE_FRAMES:
+        o->oracle_frames =
+            (uint32_t)prom_option_whole(state, "--oracle-frames", text, 1, 100000);
         break;
     case ARGP_KEY_END:
         if ((o->swap_csv || o->swap_plot) && !o->swap_frames)
@@ -187,11 +204,17 @@ static prom_still_options views_of(const bench_options *o, uint32_t views)
 }
 
 static prom_status run_trials(const bench_options *o, prom_session *session,
-                              prom_swap_result *swap, prom_error *error)
+                              prom_swap_result *swap, prom_oracle_result *oracle,
+                              prom_error *error)
 {
-    prom_still_options views = views_of(o, o->swap_frames);
-    if (!o->swap_frames) return PROM_OK;
-    return prom_swap_test_run(session, &views, o->swaps, swap, error);
+    prom_still_options swap_views = views_of(o, o->swap_frames);
+    prom_still_options oracle_views = views_of(o, o->oracle_frames);
+    prom_status status = PROM_OK;
+    if (o->swap_frames)
+        status = prom_swap_test_run(session, &swap_views, o->swaps, swap, error);
+    if (!status && o->oracle_tries)
+        status = prom_oracle_run(session, &oracle_views, o->oracle_tries, oracle, error);
+    return status;
 }
 
 static prom_status run_loop(bench_options *o, prom_session *session, prom_error *error)
@@ -199,15 +222,17 @@ static prom_status run_loop(bench_options *o, prom_session *session, prom_error 
     if (!o->loop.frames) o->loop.frames = (uint32_t)session->path.keys.count;
     prom_loop_result result = {0};
     prom_swap_result swap = {0};
+    prom_oracle_result oracle = {0};
     prom_status status = PROM_OK;
     if (o->loop.keep_folder) status = prom_output_make_folder(o->loop.keep_folder, error);
     if (!status) status = prom_frame_loop_run(session, &o->loop, &result, error);
-    if (!status) status = run_trials(o, session, &swap, error);
+    if (!status) status = run_trials(o, session, &swap, &oracle, error);
     if (!status) {
         prom_run_facts facts = {.session = session,
                                 .options = &o->loop,
                                 .result = &result,
                                 .swap = o->swap_frames ? &swap : NULL,
+                                .oracle = o->oracle_tries ? &oracle : NULL,
                                 .scene = o->model,
                                 .path = o->view.path ? o->view.path : "auto"};
         warn_infeasible(o, &result);
@@ -215,6 +240,7 @@ static prom_status run_loop(bench_options *o, prom_session *session, prom_error 
         status = write_reports(o, &facts, error);
     }
     prom_swap_result_finish(&swap);
+    prom_oracle_result_finish(&oracle);
     prom_loop_result_finish(&result);
     return status;
 }
@@ -224,7 +250,8 @@ prom_status prom_command_bench(int argc, char **argv, prom_error *error)
     bench_options o = {
         .view = prom_view_options_default,
         .loop = {.warmup = 30, .keep_every = 30, .quality_frames = QUALITY_FRAMES},
-        .swaps = SWAPS};
+        .swaps = SWAPS,
+        .oracle_frames = ORACLE_FRAMES};
     argp_parse(&argp, argc, argv, 0, NULL, &o);
     if (!o.view.selector) o.view.selector = "greedy";
     if (!(o.view.budget_ms > 0)) o.view.budget_ms = DEFAULT_BUDGET_MS;

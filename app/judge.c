@@ -4,8 +4,6 @@
 
 #include <math.h>
 
-#define METRIC "edge-blur"
-
 prom_status prom_judge_init(prom_judge *judge, prom_session *session, prom_error *error)
 {
     uint32_t width = session->camera.width, height = session->camera.height;
@@ -16,7 +14,7 @@ prom_status prom_judge_init(prom_judge *judge, prom_session *session, prom_error
     j->target = prom_target_create(width, height, true, error);
     if (!j->target) return error->status;
     uint32_t side = width > height ? width : height;
-    j->metric = prom_metric_create(METRIC, prom_session_ppd(session), side, j->pixels, 0);
+    j->metric = prom_metric_create("flip", prom_session_ppd(session), side, j->pixels, 0);
     size_t floats = prom_metric_feature_floats(j->metric, width, height);
     j->truth = prom_alloc(floats, sizeof *j->truth);
     j->shown = prom_alloc(floats, sizeof *j->shown);

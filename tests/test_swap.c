@@ -1,8 +1,8 @@
 // LINK: prom_metaobj PkgConfig::JANSSON
 // NEEDS: promenade
 //
-// The swap test on a small city: finite numbers, the same on every run, in the report, the
-// table and the plot. Skips where there is no GL.
+// The swap test and the oracle on a small city: finite numbers, the same on every run, in the
+// report, the table and the plot. Skips where there is no GL.
 #include "tests/run_program.h"
 
 #include <math.h>
@@ -49,10 +49,10 @@ static int make_model(void **state)
 #define NEED_DEVICE()                                                                          \
     if (no_device) skip()
 
-static json_t *swap_of(json_t *report)
+static json_t *found(json_t *report, const char *key)
 {
     json_t *runs = json_object_get(report, "runs");
-    return json_object_get(json_array_get(runs, 0), "swap");
+    return json_object_get(json_array_get(runs, 0), key);
 }
 
 static double number(json_t *object, const char *key)
@@ -74,7 +74,7 @@ static void check_groups(json_t *groups, double swaps)
 
 static double check_report(void)
 {
-    json_t *report = json_load_file("r.json", 0, NULL), *swap = swap_of(report);
+    json_t *report = json_load_file("r.json", 0, NULL), *swap = found(report, "swap");
     double swaps = number(swap, "swaps");
     assert_true(number(swap, "frames") == VIEWS);
     assert_true(swaps > VIEWS && swaps <= VIEWS * SWAPS);
@@ -139,11 +139,40 @@ static void files_need_the_test(void **state)
     assert_non_null(strstr(run.err, "--swap-test"));
 }
 
+static void the_oracle_is_no_worse(void **state)
+{
+    (void)state;
+    NEED_DEVICE();
+    json_t *reports[2], *oracle = NULL, *frame;
+    for (int i = 0; i < 2; i++) {
+        expect(BENCH "--oracle 60 --oracle-frames 3 --report r.json", 0);
+        assert_non_null(strstr(run.out, "\noracle "));
+        reports[i] = json_load_file("r.json", 0, NULL);
+        assert_true(json_is_null(found(reports[i], "swap")));
+    }
+    oracle = found(reports[0], "oracle");
+    assert_true(json_equal(oracle, found(reports[1], "oracle")));
+    assert_true(number(oracle, "frames") == 3 && number(oracle, "tries") == 60);
+    size_t index;
+    json_array_foreach(json_object_get(oracle, "per_frame"), index, frame)
+    {
+        assert_true(number(frame, "best_flip") >= 0);
+        assert_true(number(frame, "best_flip") <= number(frame, "flip"));
+        // Up to the budget, or what the cheapest cut takes.
+        double limit = fmax(1.5, number(frame, "predicted_ms"));
+        assert_true(number(frame, "best_ms") <= limit * (1 + 1e-6));
+    }
+    assert_int_equal(index, 3);
+    assert_true(number(oracle, "best_flip") < number(oracle, "flip")); // something was found
+    for (int i = 0; i < 2; i++) json_decref(reports[i]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(swaps_are_the_same_on_every_run),
         cmocka_unit_test(files_need_the_test),
+        cmocka_unit_test(the_oracle_is_no_worse),
     };
     enter_scratch();
     int failed = cmocka_run_group_tests(tests, make_model, NULL);
