@@ -77,8 +77,8 @@ std::string check_spec(const ImageSpec &spec, uint64_t pixel_limit)
         return "";
     std::string side = std::to_string(prom::max_side);
     return "it claims " + std::to_string(spec.width) + "x" + std::to_string(spec.height) +
-           " pixels of " + std::to_string(spec.nchannels) + " channels; at most " + side + "x" +
-           side + " pixels, " + std::to_string(pixel_limit >> 20) +
+           " pixels of " + std::to_string(spec.nchannels) + " channel(s); at most " + side +
+           "x" + side + " pixels, " + std::to_string(pixel_limit >> 20) +
            " Mi in all, of 64 channels are read";
 }
 
