@@ -1,6 +1,8 @@
 // FLIP's loops: plain C without a branch, that a compiler makes vectors of. They are compiled
-// for every processor of a kind, and once more for those with wider vectors and fused
-// multiplication. That rounds less often: errors differ by some 1e-6.
+// for every processor of a kind, and again for those with wider vectors and fused
+// multiplication. That rounds less often: means differ by 2e-8, single errors by less than
+// 1e-5, and by 1e-4 where filters narrower than a pixel meet pictures that differ by their
+// noise.
 #include "benefit/flip_private.h"
 
 #include <math.h>
@@ -45,8 +47,8 @@ INLINE float clamp(float x, float least, float most)
     return x < most ? x : most;
 }
 
-// The cube root of a normal positive number, to 3e-7 of it. A first r for x^(-1/3), right to
-// some 5 %, comes from the exponent. With h = 1 - x r^3, x^(-1/3) is r (1 - h)^(-1/3), and
+// The cube root of a normal positive number, to 2e-7 of it. A first r for x^(-1/3), right to
+// some 4 %, comes from the exponent. With h = 1 - x r^3, x^(-1/3) is r (1 - h)^(-1/3), and
 // the root x r^2 (1 - h)^(-2/3): the first series to its third power, then the second to its
 // first.
 INLINE float cube_root(float x)
@@ -70,7 +72,7 @@ INLINE float log2_of(float x)
     return (float)(above >> 23) + s * series * (float)(2 / M_LN2);
 }
 
-// For x from -126 to 126, to 2e-7 of the result. With x = n + r, r in [-1/2, 1/2], it is
+// For x from -126 to 126, to 3e-7 of the result. With x = n + r, r in [-1/2, 1/2], it is
 // 2^n exp(r ln 2).
 INLINE float exp2_of(float x)
 {
@@ -81,7 +83,7 @@ INLINE float exp2_of(float x)
     return series * float_of(biased << 23);
 }
 
-// For x from 2^-126 on and exponents from 0 to 1.
+// For x from 2^-126 on and exponents from 0 to 1, to 1e-6 of the result.
 INLINE float power(float x, float exponent)
 {
     return exp2_of(exponent * log2_of(x));

@@ -7,8 +7,9 @@
 #include "benefit/flip.c"
 
 #include "benefit/flip.h"
-#include "flip_reference.h"
 #include "metaobj/model.h"
+
+#include "flip_reference.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -255,6 +256,18 @@ static void coloured_pictures_follow_the_recipe(void **state)
     }
 }
 
+static void processors_agree(void **state)
+{
+    pair *p = *state;
+    double first = flip_of(p->a, p->b, PAIR_PPD, 0, p->map);
+    FOR_EACH_LOOPS(l)
+    {
+        assert_float_equal(flip_of(p->a, p->b, PAIR_PPD, l, p->other), first, 1e-6);
+        for (int i = 0; i < WIDTH * HEIGHT; i++)
+            assert_float_equal(p->other[i], p->map[i], 1e-5);
+    }
+}
+
 // The ends of what a filter is made for, and pictures smaller than it.
 static void extreme_sizes_work(void **state)
 {
@@ -320,6 +333,7 @@ int main(void)
         cmocka_unit_test(known_values_are_met),
         WITH_PAIR(errors_stay_near_the_change_and_turn_with_it),
         WITH_PAIR(coloured_pictures_follow_the_recipe),
+        WITH_PAIR(processors_agree),
         cmocka_unit_test(extreme_sizes_work),
         WITH_PAIR(bytes_and_linear_floats_mean_the_same),
         cmocka_unit_test(what_no_screen_shows_is_clamped),
