@@ -79,6 +79,10 @@ static void set_what(json_t *run, const prom_run_facts *f)
     set(run, "budget_ms", prom_json_number(f->options->budget_ms));
     set(run, "selector", prom_json_text(f->options->selector));
     set(run, "visibility", prom_json_text(prom_visibility_mode_name(s->visibility)));
+    char weights[PROM_WEIGHT_NAMES_BYTES];
+    set(run, "weights", prom_json_text(prom_weight_names(s->choice.weights, weights)));
+    set(run, "order", prom_json_text(prom_order_name(s->choice.order)));
+    set(run, "hysteresis", prom_json_number(s->choice.hysteresis));
     set(run, "device", device_json(s));
     set(run, "program", prom_json_text("promenade " PROM_VERSION));
 }
@@ -96,6 +100,7 @@ static void set_found(json_t *run, const prom_run_facts *f, const prom_run_stati
     set(run, "triangles", mean_json(t->triangles));
     set(run, "draws", mean_json(t->draws));
     set(run, "cut_nodes", mean_json(t->cut_nodes));
+    set(run, "switches", pair_json("mean", t->switches, "px", t->switched_px));
     set(run, "benefit", mean_json(t->benefit_px));
     set(run, "loss", mean_json(t->loss_px));
     set(run, "predict", pair_json("mape", t->mape, "worst_under", t->worst_under));
@@ -138,9 +143,9 @@ static void put_share(FILE *out, bool checked, double share)
 
 static void put_row(FILE *out, size_t frame, double budget_ms, const prom_frame_record *r)
 {
-    fprintf(out, "%zu,%.4f,%g,%.4f,%.4f,%.4f,%.0f,%.0f,%u,%.1f,%.1f,%d", frame, r->t_s,
+    fprintf(out, "%zu,%.4f,%g,%.4f,%.4f,%.4f,%.0f,%.0f,%u,%u,%.1f,%.1f,%d", frame, r->t_s,
             budget_ms, r->frame_ms, r->select_ms, r->predicted_ms, r->triangles, r->draws,
-            r->cut_nodes, r->benefit_px, r->loss_px, r->feasible);
+            r->cut_nodes, r->switches.count, r->benefit_px, r->loss_px, r->feasible);
     const prom_difference *d = &r->difference;
     bool quality = d->found & PROM_COMPARE_QUALITY;
     put_share(out, d->found & PROM_COMPARE_HOLES, d->holes);
@@ -161,7 +166,8 @@ prom_status prom_bench_write_csv(const char *path, const prom_loop_options *opti
     FILE *out = open_memstream(&text, &bytes);
     if (!out) return prom_fail(error, PROM_ERR_OUTPUT, "%s: %s", path, strerror(errno));
     fputs("frame,t_s,budget_ms,frame_ms,select_ms,predicted_ms,triangles,draws,cut_nodes,"
-          "benefit_px,loss_px,feasible,holes,accuracy,predicted_accuracy,flip,loss,hidden_cost,"
+          "switches,benefit_px,loss_px,feasible,holes,accuracy,predicted_accuracy,flip,loss,"
+          "hidden_cost,"
           "hidden_nodes\n",
           out);
     for (size_t i = 0; i < result->frames.count; i++)
@@ -191,6 +197,7 @@ void prom_bench_print(const prom_run_facts *facts)
     printf("select     mean %.2f ms, p99 %.2f\n", t.select_ms.mean, t.select_ms.p99);
     printf("drawn      %.0f triangles, %.0f nodes; loss %.0f px of %.0f\n", t.triangles,
            t.cut_nodes, t.loss_px, t.loss_px + t.benefit_px);
+    printf("switched   %.1f nodes a frame, of %.0f px\n", t.switches, t.switched_px);
     printf("predicted  mean error %.1f %%, worst under-estimate %.0f %%\n", 100 * t.mape,
            100 * t.worst_under);
     if (t.hole_frames)

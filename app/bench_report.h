@@ -13,7 +13,7 @@ typedef struct prom_run_facts {
     const prom_loop_result *result;
     const prom_swap_result *swap; // NULL: not asked for
     const prom_oracle_result *oracle;
-    const char *scene, *path;     // as given on the command line
+    const char *scene, *path; // as given on the command line
 } prom_run_facts;
 
 // {"runs": [{...}]}, one object a run:
@@ -21,7 +21,10 @@ typedef struct prom_run_facts {
 //     was run and where
 //   frame_ms: mean, p50, p95, p99, max, std; select_ms: mean, p99
 //   miss_rate, misses: count, longest_run; use_of_budget: mean frame time / budget
-//   triangles, draws, cut_nodes, benefit, loss (pixels): means over the frames
+//   weights, order (`--benefit`), hysteresis: as the cuts were chosen
+//   triangles, draws, cut_nodes, benefit, loss (pixels times weights): means over the frames
+//   switches: mean of the nodes that a frame shows by something else than the frame before; px:
+//     of the pixels that these show
 //   predict: mape, worst_under; of the drawing time
 //   infeasible_frames: where even the cheapest cut was predicted above the budget;
 //     least_budget_ms: what would have done, or null

@@ -10,6 +10,7 @@
 
 #define DEFAULT_BUDGET_MS 33.0
 #define AUTO_FRAMES 900
+#define HYSTERESIS 0.02
 
 typedef struct walk_options {
     prom_view_options view;
@@ -122,6 +123,7 @@ static prom_status walk(walk_options *o, prom_error *error)
 prom_status prom_command_walk(int argc, char **argv, prom_error *error)
 {
     walk_options o = {.view = prom_view_options_default};
+    o.view.choice.hysteresis = HYSTERESIS;
     argp_parse(&argp, argc, argv, 0, NULL, &o);
     if (!o.view.selector) o.view.selector = "greedy";
     if (!(o.view.budget_ms > 0)) o.view.budget_ms = DEFAULT_BUDGET_MS;

@@ -19,12 +19,11 @@ static double memory_mb(void)
     return (double)resident / (1 << 20);
 }
 
-static double path_time(const prom_path *path, uint64_t frame)
+static double path_step_s(const prom_path *path)
 {
     size_t keys = path->keys.count;
-    if (keys < 2) return (double)frame / PROM_PATH_RATE;
-    double span = path->keys.data[keys - 1].t - path->keys.data[0].t;
-    return span / (double)(keys - 1) * (double)frame;
+    if (keys < 2) return 1.0 / PROM_PATH_RATE;
+    return (path->keys.data[keys - 1].t - path->keys.data[0].t) / (double)(keys - 1);
 }
 
 static prom_frame_record draw_frame(loop *l, uint64_t pose)
@@ -34,7 +33,7 @@ static prom_frame_record draw_frame(loop *l, uint64_t pose)
     double start = prom_clock_ms();
     prom_path_pose(&s->path, pose, &camera);
     prom_frame_record record = prom_frame_step_draw(&l->step, &camera, start);
-    record.t_s = path_time(&s->path, pose);
+    record.t_s = l->step.dt_s * (double)pose;
     return record;
 }
 
@@ -168,6 +167,7 @@ prom_status prom_frame_loop_run(prom_session *session, const prom_loop_options *
         prom_frame_step_init(&l.step, session, options->selector, options->budget_ms,
                              options->distance_scale, error);
     if (status) return status;
+    l.step.dt_s = path_step_s(&session->path);
     status = open_comparison(&l, error);
     if (!status) status = walk(&l, result, error);
     prom_comparison_finish(&l.comparison);

@@ -9,9 +9,10 @@ prom_status prom_frame_step_init(prom_frame_step *step, prom_session *session,
     *step = (prom_frame_step){
         .session = session, .budget_ms = budget_ms, .distance_scale = distance_scale};
     prom_governor_init(&step->governor, session->cost.margin);
+    prom_last_cut_init(&step->last, &session->model);
     step->selector = prom_selector_create(selector, &session->model, error);
-    if (!step->selector) return error->status;
-    prom_status status = prom_sight_init(&step->sight, session, error);
+    prom_status status = step->selector ? PROM_OK : error->status;
+    if (!status) status = prom_sight_init(&step->sight, session, error);
     if (status) prom_frame_step_finish(step);
     return status;
 }
@@ -21,6 +22,20 @@ void prom_frame_step_finish(prom_frame_step *step)
     prom_cut_finish(&step->cut);
     prom_selector_destroy(step->selector);
     prom_sight_finish(&step->sight);
+    prom_last_cut_finish(&step->last);
+}
+
+static prom_switches choose(prom_frame_step *step, const prom_camera *camera, double allowed_ms)
+{
+    prom_view before = step->view;
+    prom_view_init(&step->view, camera);
+    prom_selection selection = prom_session_selection(
+        step->session, &step->view, step->sight.visibility, allowed_ms, step->distance_scale);
+    selection.last = &step->last;
+    if (step->last.number) selection.weighting.before = &before;
+    selection.weighting.dt_s = step->dt_s;
+    prom_selector_run(step->selector, &selection, &step->cut);
+    return prom_last_cut_note(&step->last, &step->cut);
 }
 
 // What the frame may be predicted at, and what its prediction is corrected by, are those of its
@@ -34,8 +49,7 @@ prom_frame_record prom_frame_step_draw(prom_frame_step *step, const prom_camera 
 
     double allowed = prom_governor_budget(&step->governor, step->budget_ms);
     prom_sight_begin(&step->sight, camera);
-    prom_session_select(s, step->selector, step->sight.visibility, camera, allowed,
-                        step->distance_scale, &step->cut);
+    prom_switches switches = choose(step, camera, allowed);
     double selected = prom_clock_ms();
     prom_sight_draw(&step->sight, &step->cut, camera, &plain);
     double end = prom_clock_ms();
@@ -51,6 +65,7 @@ prom_frame_record prom_frame_step_draw(prom_frame_step *step, const prom_camera 
         .benefit_px = step->cut.benefit,
         .loss_px = step->cut.loss,
         .cut_nodes = (uint32_t)step->cut.entries.count,
+        .switches = switches,
         .feasible = step->cut.cmin_ms <= allowed,
     };
     return record;

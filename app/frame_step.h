@@ -16,6 +16,7 @@ typedef struct prom_frame_record {
     double triangles, draws;
     double benefit_px, loss_px;
     uint32_t cut_nodes;
+    prom_switches switches;     // since the frame before
     bool feasible;              // the cheapest cut was within what could be spent
     prom_difference difference; // from full detail, where it was looked for
 } prom_frame_record;
@@ -25,8 +26,11 @@ typedef struct prom_frame_step {
     prom_selector *selector;
     prom_governor governor;
     prom_sight sight;
-    prom_cut cut; // the last frame's
+    prom_cut cut;   // the last frame's
+    prom_view view; // and its
+    prom_last_cut last;
     double budget_ms, distance_scale;
+    double dt_s; // between frames, for how fast things move; 0: nothing does. The caller's
 } prom_frame_step;
 
 // The session must outlive the step. On failure there is nothing to finish.

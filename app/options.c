@@ -121,6 +121,7 @@ const prom_view_options prom_view_options_default = {
     .fov_degrees = 60,
     .visibility = PROM_SEE_BOTH,
     .size_px = {1280, 720},
+    .choice = {.weights = PROM_WEIGHT_SEMANTICS},
 };
 
 double prom_full_screen_ppd(uint32_t width_px)
@@ -199,6 +200,9 @@ static error_t parse_view(int key, char *text, struct argp_state *state)
 {
     prom_view_options *o = state->input;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &o->choice;
+        break;
     case KEY_PATH:
         o->path = text;
         break;
@@ -232,7 +236,10 @@ static error_t parse_view(int key, char *text, struct argp_state *state)
     return 0;
 }
 
-const struct argp prom_argp_view = {.options = view_options, .parser = parse_view};
+static const struct argp_child choice_child[] = {{&prom_argp_choice, 0, "Choice:", 3}, {0}};
+
+const struct argp prom_argp_view = {
+    .options = view_options, .parser = parse_view, .children = choice_child};
 
 const struct argp_child prom_view_children[] = {
     {&prom_argp_log, 0, NULL, -1},

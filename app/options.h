@@ -5,6 +5,8 @@
 #ifndef PROM_APP_OPTIONS_H
 #define PROM_APP_OPTIONS_H
 
+#include "app/choice_options.h"
+
 #include <argp.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -54,6 +56,7 @@ typedef struct prom_view_options {
     prom_visibility_mode visibility;
     uint32_t size_px[2];
     double ppd; // pixels per degree; 0: of the picture filling a screen
+    prom_choice_options choice;
 } prom_view_options;
 
 // Pixels per degree of a picture that fills the screen 0.7 m wide and 0.7 m away that FLIP's

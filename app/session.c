@@ -1,6 +1,7 @@
 #include "app/session.h"
 
 #include "app/calibration.h"
+#include "benefit/metric.h"
 #include "builder/image_io.h"
 #include "metaobj/base/clock.h"
 #include "metaobj/base/log.h"
@@ -21,6 +22,16 @@ static prom_status open_model(prom_session *s, const char *model_path, prom_erro
                  model_path);
     if (!s->cells.cell_count) s->visibility &= ~(unsigned)PROM_SEE_CELLS;
     return status;
+}
+
+static void find_semantics(prom_session *s)
+{
+    prom_weights_apply(&s->choice.rules, &s->model);
+    prom_warn_of_idle_rules(&s->choice.rules);
+    s->semantics = prom_alloc(s->model.tree_count, sizeof *s->semantics);
+    if (prom_weights_gather(&s->model, s->semantics)) return;
+    prom_free(s->semantics);
+    s->semantics = NULL;
 }
 
 static bool with_ids(const prom_session *s)
@@ -82,11 +93,13 @@ static prom_status open_all(prom_session *s, const prom_session_device *device,
 {
     uint32_t size_px[2] = {options->size_px[0], options->size_px[1]};
     s->ppd = options->ppd;
+    s->choice = options->choice;
     double start = prom_clock_ms();
     // What does not choose by cost and benefit has no use for it.
     if (prom_selector_class_named(options->selector)->uses_cost)
         s->visibility = options->visibility;
     prom_status status = open_model(s, model_path, error);
+    if (!status) find_semantics(s);
     if (!status && with_path) status = open_path(s, options->path, path_frames, error);
     if (!status) status = open_device(s, device, size_px, error);
     if (status) return status;
@@ -130,6 +143,7 @@ void prom_session_close(prom_session *session)
     if (session->renderer) prom_renderer_destroy(session->renderer);
     prom_context_destroy(session->context);
     prom_view_cells_finish(&session->cells);
+    prom_free(session->semantics);
     prom_model_finish(&session->model);
     prom_container_close(session->container);
     *session = (prom_session){0};
@@ -153,6 +167,15 @@ double prom_session_ppd(const prom_session *session)
     return prom_full_screen_ppd(session->camera.width);
 }
 
+// Metrics that look at pixels, whatever their angle, are right at the sizes that they measured.
+static float table_px(const prom_session *session)
+{
+    const prom_measured *measured = &session->model.measured;
+    const prom_metric_class *metric = prom_metric_named(measured->metric);
+    bool by_angle = metric && metric->uses_ppd;
+    return by_angle ? measured->ppd / (float)prom_session_ppd(session) : 1.0f;
+}
+
 prom_selection prom_session_selection(const prom_session *session, const prom_view *view,
                                       const prom_visibility *visibility, double budget_ms,
                                       double distance_scale)
@@ -162,8 +185,12 @@ prom_selection prom_session_selection(const prom_session *session, const prom_vi
         .cost = &session->cost,
         .budget_ms = budget_ms,
         .distance_scale = (float)distance_scale,
-        .table_px = (float)(session->model.measured.ppd / prom_session_ppd(session)),
+        .table_px = table_px(session),
         .visibility = visibility,
+        .weighting = {.use = session->choice.weights, .semantics = session->semantics},
+        .order = session->choice.order,
+        .priors = session->choice.priors,
+        .hysteresis = (float)session->choice.hysteresis,
     };
 }
 

@@ -22,6 +22,8 @@ typedef struct prom_session {
     prom_renderer *renderer;
     prom_draw_list *list;
     prom_target *target;
+    prom_choice_options choice;
+    float *semantics;     // weights of the tree's nodes; NULL: all 1
     prom_cost_model cost; // {0} when nothing is known and neither budget nor selector needs it
     prom_path path;
     prom_camera camera;   // all but the pose is set

@@ -180,6 +180,8 @@ prom_run_statistics prom_run_statistics_of(const prom_frame_record *records, siz
         s.cut_nodes += records[i].cut_nodes / (double)count;
         s.benefit_px += records[i].benefit_px / (double)count;
         s.loss_px += records[i].loss_px / (double)count;
+        s.switches += records[i].switches.count / (double)count;
+        s.switched_px += records[i].switches.px / (double)count;
     }
     add_misses(records, count, budget_ms, &s);
     add_prediction(records, count, &s);

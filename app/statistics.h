@@ -12,6 +12,7 @@ typedef struct prom_spread {
 typedef struct prom_run_statistics {
     prom_spread frame_ms, select_ms;
     double triangles, draws, cut_nodes, benefit_px, loss_px; // means
+    double switches, switched_px;                            // means, see prom_switches
     double miss_rate, use_of_budget; // a miss: frame_ms above the budget
     uint32_t misses, longest_misses; // the longest run of them
     double mape, worst_under;        // of predicted_ms: mean |p/a - 1|, greatest a/p - 1

@@ -186,6 +186,7 @@ static prom_status take_turn(walk *w, prom_error *error)
     w->last_ms = start;
     prom_status status = follow_size(w, error);
     if (status) return status;
+    w->step.dt_s = dt_s;
     advance(w, dt_s);
     bool done = same_view(&w->camera, &w->drawn) && is_at_rest(w);
     if (!done)

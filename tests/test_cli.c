@@ -22,8 +22,9 @@ static void expect(const char *arguments, int code)
     assert_int_equal(run.code, code);
 }
 
-static const char *const commands[] = {"build",     "info",       "shot",       "walk", "bench",
-                                       "calibrate", "compare", "scene city", "scene gallery", "scene tile", NULL};
+static const char *const commands[] = {"build",         "info",       "shot",    "walk",
+                                       "bench",         "calibrate",  "compare", "scene city",
+                                       "scene gallery", "scene tile", NULL};
 
 static void help_goes_to_stdout(void **state)
 {
@@ -116,6 +117,13 @@ static const char *const wrong[][2] = {
     {"shot a.prom -o b.png --ppd 0", "--ppd"},
     {"walk a.prom --ppd far", "--ppd"},
     {"bench a.prom --visibility all", "cells or both"},
+    {"bench a.prom --weights focus,beauty", "`beauty'"},
+    {"shot a.prom -o b.png --weight statue", "`statue'"},
+    {"shot a.prom -o b.png --weight =4", "pattern"},
+    {"walk a.prom --weight statue=-1", "--weight"},
+    {"bench a.prom --benefit most", "pixels or sum"},
+    {"bench a.prom --prior full-detail,", "few-pixels"},
+    {"bench a.prom --hysteresis 2", "--hysteresis"},
     {"walk", "missing"},
     {"walk a.prom b.prom", "b.prom"},
     {"walk a.prom --frames 0", "--frames"},

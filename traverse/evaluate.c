@@ -68,7 +68,7 @@ static float look_at(prom_eval *eval, uint32_t node, bool parent_inside)
     n->culled = cull == PROM_OUTSIDE;
     n->expanded = false;
     n->option_count = 0;
-    n->px = n->worth_px = n->value_px = n->footprint_px = 0.0f;
+    n->px = n->value_px = n->footprint_px = 0.0f;
     n->weight = 1.0f;
     n->cmin = n->cmin_benefit = 0.0;
     n->cmin_option = PROM_NONE;
@@ -127,7 +127,7 @@ static void add_options(prom_eval *eval, uint32_t node)
     const prom_prototype *p = &m->prototypes[m->prototype[node]];
     n->first_option = eval->option_count;
     n->option_count = 0;
-    if (eval->selection->order == PROM_ORDER_PIXELS) n->value_px = n->worth_px;
+    if (eval->selection->order == PROM_ORDER_PIXELS) n->value_px = n->px * n->weight;
     if (n->near_case && m->child_count[node]) return;
     float size = accuracy_size(eval, node);
     prom_accuracy_place place = place_of(eval, node);
@@ -141,7 +141,7 @@ static void add_options(prom_eval *eval, uint32_t node)
                         (is_mesh && n->hidden && eval->any_mesh_hides);
         if (too_large && !any_size) continue;
         float accuracy = prom_accuracy(m, rep, &place, p->radius);
-        float benefit = n->worth_px * accuracy;
+        float benefit = n->px * n->weight * accuracy;
         eval->options[eval->option_count++] = (prom_option){
             .rep = rep, .accuracy = accuracy, .benefit = benefit, .value = benefit};
     }
@@ -149,13 +149,13 @@ static void add_options(prom_eval *eval, uint32_t node)
     if (eval->heeds_priors && eval->selection->priors) prom_eval_heed_priors(eval, node);
 }
 
-// What shows of a node, or nothing where that is too little; it is worth as much as it is.
+// What shows of a node, or nothing where that is too little.
 static void set_visible(prom_eval *eval, uint32_t node, float px)
 {
     prom_eval_node *n = &eval->nodes[node];
     n->hidden =
         eval->selection->visibility && px < HIDDEN_PX && px < HIDDEN_SHARE * n->footprint_px;
-    n->px = n->worth_px = n->hidden ? 0.0f : px;
+    n->px = n->hidden ? 0.0f : px;
 }
 
 // A node under none with pixels of its own keeps those that look_at gave it; a cluster that
@@ -166,23 +166,24 @@ static void start_flow(prom_eval *eval, uint32_t node)
     n->in_flow = !(n->near_case && eval->model->child_count[node]);
     if (!n->in_flow) n->footprint_px = 0.0f;
     set_visible(eval, node, visible_share(eval, node) * n->footprint_px);
-    n->worth_px *= n->weight;
 }
 
-// Splits what a node's pixels are worth among its children: by what shows of each (in_view),
-// and by their weights. So the node and its children are worth the same.
-static void flow_worth(prom_eval *eval, uint32_t node)
+// Scales the children's weights so that their pixels (eval->px) are worth together what the
+// node's are.
+static void flow_weight(prom_eval *eval, uint32_t node)
 {
     const prom_model *m = eval->model;
-    const prom_eval_node *n = &eval->nodes[node];
-    uint32_t first = m->first_child[node], count = m->child_count[node];
-    for (uint32_t c = 0; c < count; c++)
-        if (!eval->nodes[first + c].culled) eval->in_view[c] *= eval->nodes[first + c].weight;
-    prom_split_pixels(m, m->prototype[node], n->dir, n->worth_px, eval->in_view, eval->px);
-    for (uint32_t c = 0; c < count; c++) {
-        prom_eval_node *child = &eval->nodes[first + c];
-        if (!child->culled) child->worth_px = child->hidden ? 0.0f : eval->px[c];
+    prom_eval_node *children = &eval->nodes[m->first_child[node]];
+    double px = 0.0, worth = 0.0;
+    for (uint32_t c = 0; c < m->child_count[node]; c++) {
+        px += (double)eval->px[c];
+        worth += (double)eval->px[c] * (double)children[c].weight;
     }
+    if (!(px > 0.0)) return;
+    double mean = worth / px, weight = (double)eval->nodes[node].weight;
+    for (uint32_t c = 0; c < m->child_count[node]; c++)
+        children[c].weight =
+            (float)(mean > 0.0 ? (double)children[c].weight * (weight / mean) : weight);
 }
 
 // Splits a node's footprint among its children by their baked shares, and what is visible of it
@@ -203,7 +204,7 @@ static void flow_down(prom_eval *eval, uint32_t node)
     prom_split_pixels(m, m->prototype[node], n->dir, n->px, eval->in_view, eval->px);
     for (uint32_t c = 0; c < count; c++)
         if (!children[c].culled) set_visible(eval, first + c, eval->px[c]);
-    if (eval->weighted) flow_worth(eval, node);
+    if (eval->weighted) flow_weight(eval, node);
 }
 
 static void expand(prom_eval *eval, uint32_t node)
@@ -245,7 +246,7 @@ bool prom_eval_open_visible(void *user, uint32_t node)
     for (uint32_t i = 0; i < n->option_count; i++)
         best = fmaxf(best, eval->options[n->first_option + i].benefit);
     float loss = n->size_px < TINY_SIZE_PX ? TINY_LOSS_PX : SMALL_LOSS_PX;
-    return n->worth_px - best >= loss * eval->tolerance;
+    return n->px * n->weight - best >= loss * eval->tolerance;
 }
 
 void prom_eval_run(prom_eval *eval, const prom_selection *selection, prom_eval_open *open,
@@ -283,14 +284,14 @@ void prom_eval_emit(const prom_eval *eval, uint32_t node, uint32_t option, prom_
                                        .depth = n->nearest,
                                        .footprint_px = n->footprint_px,
                                        .visible_px = n->px,
-                                       .weight = n->px > 0.0f ? n->worth_px / n->px : n->weight,
+                                       .weight = n->weight,
                                        .accuracy = o->accuracy,
                                        .cost_ms = (float)o->cost,
                                        .whole = n->inside,
                                    });
     cut->predicted_ms += o->cost;
     cut->benefit += o->benefit;
-    cut->loss += (double)n->worth_px - o->benefit;
+    cut->loss += (double)(n->px * n->weight) - o->benefit;
 }
 
 void prom_eval_emit_cmin(prom_eval *eval, prom_cut *cut)

@@ -25,9 +25,8 @@ typedef struct prom_eval_node {
     uint32_t cmin_option;      // its own option in that cut, or PROM_NONE: opened
     uint32_t first_option, option_count;
     float px;           // visible pixels
-    float worth_px;     // the same, each times its weight
     float value_px;     // as they count where things are ordered
-    float weight;       // of the node by itself
+    float weight;       // mean of their weights
     float footprint_px; // pixels, if nothing outside its ancestor hid it
     float distance, nearest, size_px;
     float uv[2]; // direction to the eye, see prom_appearance
