@@ -29,6 +29,7 @@ enum {
     KEY_FORCE,
     KEY_FROM,
     KEY_DROP_WORK,
+    KEY_KEEP_VIEWS,
     KEY_VIEW_CELLS,
     KEY_VIEW_CELL_SIZE,
     KEY_VIEW_CELL_PX,
@@ -87,6 +88,10 @@ static const struct argp_option options[] = {
      "view-cells",
      6},
     {"force", KEY_FORCE, NULL, 0, "Take nothing from earlier builds", 6},
+    {"keep-views", KEY_KEEP_VIEWS, NULL, 0,
+     "Keep the pictures that are drawn in X.prom.work too: a build with another --metric or "
+     "--ppd need not draw them",
+     6},
     {"drop-work", KEY_DROP_WORK, NULL, 0,
      "Delete X.prom.work, which serves later builds, at the end", 6},
     {0},
@@ -158,6 +163,9 @@ static error_t parse_work(prom_build_command *o, int key, char *text, struct arg
         break;
     case KEY_FROM:
         parse_from(&o->build, text, state);
+        break;
+    case KEY_KEEP_VIEWS:
+        o->build.keep_views = true;
         break;
     case KEY_DROP_WORK:
         o->build.drop_work = true;

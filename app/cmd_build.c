@@ -72,6 +72,9 @@ static void print_report(const prom_build_command *o, const prom_build_report *r
     printf("nodes            %12" PRIu32 "  (most children: %" PRIu32 ")\n", r->nodes,
            r->max_children);
     printf("representations  %12" PRIu32 "\n", r->representations);
+    if (r->views_taken)
+        printf("views taken      %12" PRIu32 "  (prototypes measured in kept pictures)\n",
+               r->views_taken);
     if (o->where.kind) print_view_cells(cells);
     printf("file             %12.1f MiB (%.0f bytes a triangle)\n",
            (double)r->file_bytes / (1 << 20), (double)r->file_bytes / triangles);

@@ -34,10 +34,11 @@ static const struct argp_option options[] = {
      "(PNG)",
      1},
     {"size-px", KEY_SIZE_PX, "PX", 0,
-     "For --sheet: size of the object in the pictures, 8 to 128; the nearest that is stored "
+     "For --sheet: size of the object in the pictures, 8 to 512; the nearest that is stored "
      "(128)",
      1},
-    {"directions", KEY_DIRECTIONS, "N", 0, "For --sheet: directions, 1 to 66 (9)", 1},
+    {"directions", KEY_DIRECTIONS, "N", 0,
+     "For --sheet: directions, 1 to 66 (9); above 128 px there are 6", 1},
     {0},
 };
 
@@ -66,7 +67,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
         break;
     case KEY_SIZE_PX:
         o->sheet.size_px = (float)prom_option_number(state, "--size-px", text, PROM_SIZE_MIN_PX,
-                                                     PROM_SIZE_MAX_PX);
+                                                     PROM_SIZE_MAX_LARGE_PX);
         break;
     case KEY_DIRECTIONS:
         o->sheet.directions =

@@ -17,7 +17,7 @@
 #define GAP 4           // between a picture and its map
 #define COLUMN_GAP 20   // and between columns
 #define LINE_HEIGHT 20  // of text
-#define HEAD_LINES 5    // above the columns' heads
+#define HEAD_LINES 6    // above the columns' heads
 #define LABEL_CHARS 17  // before the rows
 #define LEAST_CHARS 64  // across
 #define VIEW_PX 128     // smaller pictures are enlarged to about this
@@ -77,20 +77,27 @@ static bool adds_more(const float *nearest, uint32_t a, uint32_t b)
     return height(a) > height(b) + 1e-4f;
 }
 
-void prom_spread_directions(uint32_t count, uint32_t *bins)
+// `count` of the bins < among, +z one of them; each next one adds most. From those that look
+// from above to those from below.
+static void spread_directions(uint32_t count, uint32_t among, uint32_t *bins)
 {
     const float front[3] = {0, 0, 1};
     float nearest[PROM_DIRS] = {0};
     nearest[prom_bin_of_direction(front)] = INFINITY; // the first
     for (uint32_t i = 0; i < count; i++) {
         uint32_t best = 0;
-        for (uint32_t d = 1; d < PROM_DIRS; d++)
+        for (uint32_t d = 1; d < among; d++)
             if (adds_more(nearest, d, best)) best = d;
         bins[i] = best;
-        for (uint32_t d = 0; d < PROM_DIRS; d++)
+        for (uint32_t d = 0; d < among; d++)
             if (i == 0 || distance(best, d) < nearest[d]) nearest[d] = distance(best, d);
     }
     qsort(bins, count, sizeof *bins, from_above);
+}
+
+static bool is_large(const sheet *s)
+{
+    return s->size >= PROM_SIZES;
 }
 
 // ---- layout
@@ -170,9 +177,13 @@ static void draw_head(sheet *s)
         print(s, MARGIN, y += LINE_HEIGHT, dim, "left: the look; right: its error by %s, 0 ",
               prom_view_error_metric(s->error));
     print(s, draw_scale(s, x, y), y, dim, " 1");
-    if (same_metric(s))
-        print(s, MARGIN, y + LINE_HEIGHT, dim, "here: measured now, where that is off by %g",
-              PROM_SHEET_TOLERANCE);
+    if (!same_metric(s)) return;
+    print(s, MARGIN, y += LINE_HEIGHT, dim, "here: measured now, where that is off by %g",
+          PROM_SHEET_TOLERANCE);
+    if (m->measured.veto_error < 1)
+        print(s, MARGIN, y + LINE_HEIGHT, dim,
+              "veto: more than %.3g %% of the pixels err by more than %.3g",
+              100 - 100 * (double)m->measured.veto_percentile, (double)m->measured.veto_error);
 }
 
 static void draw_column_heads(sheet *s)
@@ -209,25 +220,38 @@ static void draw_truth(sheet *s)
     }
 }
 
-static void draw_accuracy(sheet *s, uint32_t x, uint32_t y, uint32_t rep, uint32_t dir,
-                          double here)
+static double stored_accuracy(const sheet *s, uint32_t rep, uint32_t dir)
 {
-    double stored = s->model->accuracy[rep].bins[dir][s->size] / 255.0;
-    bool shown = prom_size_of_bin(s->size) <= s->model->reps[rep].max_size_px;
+    const prom_accuracy_row *row = &s->model->accuracy[rep];
+    return (is_large(s) ? row->large[dir][s->size - PROM_SIZES] : row->bins[dir][s->size]) /
+           255.0;
+}
+
+static void draw_accuracy(sheet *s, uint32_t x, uint32_t y, uint32_t rep, uint32_t dir,
+                          double here, bool vetoed)
+{
+    const prom_representation *r = &s->model->reps[rep];
+    double stored = stored_accuracy(s, rep, dir);
+    bool shown = prom_size_of_bin(s->size) <= r->max_size_px;
+    if (is_large(s) && r->kind != PROM_REP_MESH) {
+        print(s, x, y, dim, "none, here %.2f", here);
+        return;
+    }
     x = print(s, x, y, shown ? ink : dim, "%.2f", stored);
-    if (same_metric(s) && fabs(stored - here) > PROM_SHEET_TOLERANCE)
-        print(s, x, y, warning, " here %.2f", here);
+    if (!same_metric(s) || fabs(stored - here) <= PROM_SHEET_TOLERANCE) return;
+    print(s, x, y, warning, stored > 0 || !vetoed ? " here %.2f" : " veto, else %.2f", here);
 }
 
 static void draw_cell(sheet *s, uint32_t rep, uint32_t row, uint32_t column)
 {
     uint32_t dir = s->dirs[column], x = column_x(s, column), y = row_y(s, row);
     prom_view_error_set_truth(s->error, &s->truth, dir, NULL);
-    double here = prom_view_error_run(s->error, &s->views, dir, s->rgb, s->map);
+    bool vetoed;
+    double here = prom_view_error_run(s->error, &s->views, dir, s->rgb, s->map, &vetoed);
     prom_colour_map_paint(s->map, (size_t)s->side * s->side, s->map_rgb[0]);
     draw_picture(s, x, y, s->rgb);
     draw_picture(s, x + view_width(s) + GAP, y, s->map_rgb);
-    draw_accuracy(s, x, y + view_width(s) + GAP, rep, dir, here);
+    draw_accuracy(s, x, y + view_width(s) + GAP, rep, dir, here, vetoed);
 }
 
 static void draw_label(sheet *s, const prom_representation *rep, uint32_t y)
@@ -244,12 +268,12 @@ static void draw_label(sheet *s, const prom_representation *rep, uint32_t y)
 static void draw_rows(sheet *s)
 {
     const prom_prototype *proto = &s->model->prototypes[s->prototype];
-    prom_object_views_take_truth(&s->device, s->node, &s->truth);
+    prom_object_views_take_truth(&s->device, s->node, is_large(s), &s->truth);
     draw_truth(s);
     for (uint32_t i = 0; i < proto->rep_count; i++) {
         uint32_t rep = proto->first_rep + i;
         draw_label(s, &s->model->reps[rep], row_y(s, 1 + i));
-        prom_object_views_take(&s->device, s->prototype, rep, &s->views);
+        prom_object_views_take(&s->device, s->prototype, rep, is_large(s), &s->views);
         for (uint32_t c = 0; c < s->dir_count; c++) draw_cell(s, rep, 1 + i, c);
     }
 }
@@ -260,17 +284,16 @@ static void sheet_init(sheet *s, const prom_sheet_options *options)
 {
     s->prototype = s->model->prototype[s->node];
     s->size = (uint32_t)(prom_bin_of_size(options->size_px) + 0.5f);
-    s->dir_count = options->directions;
-    prom_spread_directions(s->dir_count, s->dirs);
+    uint32_t dirs = is_large(s) ? PROM_DIRS_LARGE : PROM_DIRS;
+    s->dir_count = options->directions < dirs ? options->directions : dirs;
+    spread_directions(s->dir_count, dirs, s->dirs);
     s->error = prom_view_error_create(&s->model->measured, prom_size_of_bin(s->size));
     s->side = prom_view_error_side(s->error);
-    s->zoom = (VIEW_PX + s->side / 2) / s->side;
+    s->zoom = s->side < VIEW_PX ? (VIEW_PX + s->side / 2) / s->side : 1;
     size_t pixels = (size_t)s->side * s->side;
     s->rgb = prom_alloc(pixels, sizeof *s->rgb);
     s->map_rgb = prom_alloc(pixels, sizeof *s->map_rgb);
     s->map = prom_alloc(pixels, sizeof *s->map);
-    prom_views_init(&s->truth, false);
-    prom_views_init(&s->views, false);
     start_canvas(s);
 }
 

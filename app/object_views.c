@@ -77,7 +77,8 @@ static void collect_leaves(const prom_model *m, uint32_t node, const double cent
     prom_free(below);
 }
 
-void prom_object_views_take_truth(prom_object_views *v, uint32_t node, prom_views *out)
+void prom_object_views_take_truth(prom_object_views *v, uint32_t node, bool large,
+                                  prom_views *out)
 {
     const prom_model *m = v->model;
     const prom_prototype *proto = &m->prototypes[m->prototype[node]];
@@ -85,19 +86,21 @@ void prom_object_views_take_truth(prom_object_views *v, uint32_t node, prom_view
     if (m->child_count[node]) {
         double center[3];
         prom_placement_apply(&m->placement[node], proto->center, center);
-        collect_leaves(m, node, center, PROM_VIEW_PX / (2.0f * proto->radius), &items);
+        float px_per_unit =
+            (large ? PROM_VIEW_LARGE_PX : PROM_VIEW_PX) / (2.0f * proto->radius);
+        collect_leaves(m, node, center, px_per_unit, &items);
     } else {
         prom_array_push(&items, item_in_prototype(m, m->prototype[node], proto->first_rep));
     }
     prom_baker_set_subject(v->baker, items.data, items.count);
-    prom_baker_take_views(v->baker, proto->radius, out);
+    prom_baker_take_views(v->baker, proto->radius, large, out);
     prom_array_finish(&items);
 }
 
-void prom_object_views_take(prom_object_views *v, uint32_t prototype, uint32_t rep,
+void prom_object_views_take(prom_object_views *v, uint32_t prototype, uint32_t rep, bool large,
                             prom_views *out)
 {
     prom_draw_item item = item_in_prototype(v->model, prototype, rep);
     prom_baker_set_subject(v->baker, &item, 1);
-    prom_baker_take_views(v->baker, v->model->prototypes[prototype].radius, out);
+    prom_baker_take_views(v->baker, v->model->prototypes[prototype].radius, large, out);
 }

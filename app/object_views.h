@@ -19,10 +19,11 @@ prom_status prom_object_views_init(prom_object_views *views, prom_container *con
 void prom_object_views_finish(prom_object_views *views); // {0} is allowed
 
 // The true look of a node: a leaf's finest mesh; of a cluster all leaves below it, each by a
-// mesh that errs less than half a pixel.
-void prom_object_views_take_truth(prom_object_views *views, uint32_t node, prom_views *out);
+// mesh that errs less than half a pixel. large: the large views too.
+void prom_object_views_take_truth(prom_object_views *views, uint32_t node, bool large,
+                                  prom_views *out);
 // The look of a representation of a prototype.
 void prom_object_views_take(prom_object_views *views, uint32_t prototype, uint32_t rep,
-                            prom_views *out);
+                            bool large, prom_views *out);
 
 #endif

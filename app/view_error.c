@@ -11,7 +11,9 @@
 
 struct prom_view_error {
     prom_metric *metric;
-    float background[BACKGROUNDS]; // linear
+    prom_measured how;
+    bool large;                    // large views are looked at,
+    uint32_t view_px;              // of this side
     float step;                    // pixels of a view along one of a picture
     uint32_t side, pad, wide;      // of a picture; padded, so that the metric sees all around
     prom_patch view, truth, other; // reduced, but for the view
@@ -31,11 +33,14 @@ static uint32_t radius_of(const char *metric, double ppd)
 
 prom_view_error *prom_view_error_create(const prom_measured *measured, float size_px)
 {
-    assert(size_px <= PROM_VIEW_PX);
+    assert(size_px <= PROM_VIEW_LARGE_PX);
     const prom_metric_class *class = prom_metric_named(measured->metric);
     if (!class) class = prom_metric_at(0);
     prom_view_error *e = prom_calloc(1, sizeof *e);
-    e->step = PROM_VIEW_PX / size_px;
+    e->how = *measured;
+    e->large = size_px > PROM_VIEW_PX;
+    e->view_px = e->large ? PROM_VIEW_LARGE_PX : PROM_VIEW_PX;
+    e->step = (float)e->view_px / size_px;
     e->side = (uint32_t)ceilf(size_px);
     e->pad = radius_of(class->name, measured->ppd);
     e->wide = e->side + 2 * e->pad;
@@ -43,17 +48,15 @@ prom_view_error *prom_view_error_create(const prom_measured *measured, float siz
     e->metric = prom_metric_create(class->name, measured->ppd, e->wide, pixels, 1);
     size_t floats = prom_metric_feature_floats(e->metric, e->wide, e->wide);
     prom_encoder_init(&e->encoder);
-    e->view.pixels = prom_alloc(PROM_VIEW_PIXELS, sizeof *e->view.pixels);
-    e->between = prom_alloc((size_t)PROM_VIEW_PX * e->side, sizeof *e->between);
+    e->view.pixels = prom_alloc((size_t)e->view_px * e->view_px, sizeof *e->view.pixels);
+    e->between = prom_alloc((size_t)e->view_px * e->side, sizeof *e->between);
     e->truth.pixels = prom_alloc(inner, sizeof *e->truth.pixels);
     e->other.pixels = prom_alloc(inner, sizeof *e->other.pixels);
     e->padded = prom_alloc(pixels, sizeof *e->padded);
     e->map = prom_alloc(pixels, sizeof *e->map);
     e->features = prom_alloc(floats, sizeof *e->features);
-    for (int b = 0; b < BACKGROUNDS; b++) {
-        e->background[b] = measured->background[b];
+    for (int b = 0; b < BACKGROUNDS; b++)
         e->truth_features[b] = prom_alloc(floats, sizeof *e->truth_features[b]);
-    }
     return e;
 }
 
@@ -87,9 +90,8 @@ const char *prom_view_error_metric(const prom_view_error *e)
 static void take_picture(prom_view_error *e, const prom_views *views, uint32_t dir,
                          prom_patch *out)
 {
-    const prom_part whole = {0, 0, PROM_VIEW_PX, PROM_VIEW_PX};
-    prom_patch_take((const uint8_t(*)[4])views->rgba + prom_view_start(dir), PROM_ATLAS_WIDTH,
-                    whole, &e->view);
+    const prom_part whole = {0, 0, e->view_px, e->view_px};
+    prom_patch_take(views, e->large ? PROM_DIRS + dir : dir, whole, &e->view);
     prom_patch_reduce(&e->view, e->step, e->between, out);
 }
 
@@ -124,15 +126,19 @@ void prom_view_error_set_truth(prom_view_error *e, const prom_views *views, uint
 {
     take_picture(e, views, dir, &e->truth);
     for (int b = 0; b < BACKGROUNDS; b++)
-        look(e, &e->truth, e->background[b], b == 0 ? rgb : NULL, e->truth_features[b]);
+        look(e, &e->truth, e->how.background[b], b == 0 ? rgb : NULL, e->truth_features[b]);
+}
+
+static float larger_coverage(const prom_view_error *e, size_t i)
+{
+    return fmaxf(e->truth.pixels[i][3], e->other.pixels[i][3]);
 }
 
 static double mean_error(const prom_view_error *e)
 {
     bool squares = prom_metric_class_of(e->metric)->squares;
     double area = 0, sum = 0;
-    for (uint32_t i = 0; i < e->side * e->side; i++)
-        area += fmaxf(e->truth.pixels[i][3], e->other.pixels[i][3]);
+    for (size_t i = 0; i < (size_t)e->side * e->side; i++) area += larger_coverage(e, i);
     for (size_t i = 0; i < (size_t)e->wide * e->wide; i++)
         sum += squares ? (double)e->map[i] * e->map[i] : e->map[i];
     // Less than a pixel covered: its error is judged as if it were one.
@@ -140,18 +146,33 @@ static double mean_error(const prom_view_error *e)
     return squares ? sqrt(mean) : mean;
 }
 
+// As in the builder, but for any size.
+static bool is_vetoed(const prom_view_error *e)
+{
+    size_t footprint = 0, wrong = 0;
+    for (uint32_t y = 0; y < e->side; y++)
+        for (uint32_t x = 0; x < e->side; x++) {
+            if (larger_coverage(e, (size_t)y * e->side + x) < 0.5f) continue;
+            footprint++;
+            wrong += e->map[inner_row(e, y) + x] > e->how.veto_error;
+        }
+    return (double)wrong > (1 - (double)e->how.veto_percentile) * (double)footprint;
+}
+
 double prom_view_error_run(prom_view_error *e, const prom_views *views, uint32_t dir,
-                           uint8_t (*rgb)[3], float *map)
+                           uint8_t (*rgb)[3], float *map, bool *vetoed)
 {
     double error = 0;
+    *vetoed = false;
     take_picture(e, views, dir, &e->other);
     for (int b = 0; b < BACKGROUNDS; b++) {
-        look(e, &e->other, e->background[b], b == 0 ? rgb : NULL, e->features);
+        look(e, &e->other, e->how.background[b], b == 0 ? rgb : NULL, e->features);
         prom_metric_compare(e->metric, e->truth_features[b], e->features, e->wide, e->wide,
                             e->map);
         for (uint32_t y = 0; b == 0 && y < e->side; y++)
             memcpy(map + (size_t)y * e->side, e->map + inner_row(e, y), e->side * sizeof *map);
         error += mean_error(e);
+        *vetoed |= is_vetoed(e);
     }
     return fmax(1 - error / BACKGROUNDS, 0);
 }

@@ -3,14 +3,15 @@
 #ifndef PROM_APP_VIEW_ERROR_H
 #define PROM_APP_VIEW_ERROR_H
 
-#include "builder/bake.h"
+#include "builder/views.h"
 #include "metaobj/model.h"
 
 #include <stdbool.h>
 
 typedef struct prom_view_error prom_view_error;
 
-// size_px: PROM_VIEW_PX at most. Smaller pictures are area averages of the views.
+// size_px: PROM_VIEW_LARGE_PX at most; from PROM_VIEW_PX on, only of the directions, and of
+// views, that have large ones. Smaller pictures are area averages of the views.
 prom_view_error *prom_view_error_create(const prom_measured *measured, float size_px);
 void prom_view_error_destroy(prom_view_error *error); // NULL is allowed
 // Pixels along a side of the pictures.
@@ -26,7 +27,9 @@ void prom_view_error_set_truth(prom_view_error *error, const prom_views *views, 
 // and returned, the accuracy: 1 - error summed over the padded window / area covered in either
 // picture (or for a metric that squares, the root of the mean square), the mean of both
 // backgrounds.
+// *vetoed: whether so many pixels of that area err so much that accuracy would be 0 where the
+// size is large enough to say so.
 double prom_view_error_run(prom_view_error *error, const prom_views *views, uint32_t dir,
-                           uint8_t (*rgb)[3], float *map);
+                           uint8_t (*rgb)[3], float *map, bool *vetoed);
 
 #endif

@@ -2,37 +2,37 @@
 
 #include "metaobj/base/alloc.h"
 
-_Static_assert(PROM_ATLAS_COLUMNS >= 6, "the six faces stand in a row of the atlas");
+// One picture holds all views: the large ones in rows below the others.
+#define COLUMNS 12
+#define ROWS ((PROM_DIRS + COLUMNS - 1) / COLUMNS)
+#define LARGE_COLUMNS (COLUMNS * PROM_VIEW_PX / PROM_VIEW_LARGE_PX)
+#define LARGE_ROWS ((PROM_DIRS_LARGE + LARGE_COLUMNS - 1) / LARGE_COLUMNS)
+#define WIDTH (COLUMNS * PROM_VIEW_PX)
+#define SMALL_HEIGHT (ROWS * PROM_VIEW_PX)
+#define HEIGHT (SMALL_HEIGHT + LARGE_ROWS * PROM_VIEW_LARGE_PX)
+_Static_assert(COLUMNS >= 6, "the six faces stand in a row");
 
 struct prom_baker {
     prom_target *target;
     prom_draw_list *list;
+    prom_rgba *pixels; // read back
+    uint32_t *ids;
+    bool large; // drawn too
 };
 
 static const uint8_t nothing[4] = {0, 0, 0, 0};
 
-void prom_views_init(prom_views *views, bool with_ids)
-{
-    views->rgba = prom_alloc(PROM_ATLAS_PIXELS, sizeof *views->rgba);
-    views->ids = with_ids ? prom_alloc(PROM_ATLAS_PIXELS, sizeof *views->ids) : NULL;
-}
-
-void prom_views_finish(prom_views *views)
-{
-    prom_free(views->rgba);
-    prom_free(views->ids);
-    *views = (prom_views){0};
-}
-
 prom_baker *prom_baker_create(prom_renderer *renderer, prom_error *error)
 {
     prom_baker *baker = prom_calloc(1, sizeof *baker);
-    baker->target = prom_target_create(PROM_ATLAS_WIDTH, PROM_ATLAS_HEIGHT, true, error);
+    baker->target = prom_target_create(WIDTH, HEIGHT, true, error);
     if (!baker->target) {
         prom_baker_destroy(baker);
         return NULL;
     }
     baker->list = prom_draw_list_create(renderer);
+    baker->pixels = prom_alloc((size_t)WIDTH * HEIGHT, sizeof *baker->pixels);
+    baker->ids = prom_alloc((size_t)WIDTH * SMALL_HEIGHT, sizeof *baker->ids);
     return baker;
 }
 
@@ -41,6 +41,8 @@ void prom_baker_destroy(prom_baker *baker)
     if (!baker) return;
     prom_target_destroy(baker->target);
     prom_draw_list_destroy(baker->list);
+    prom_free(baker->pixels);
+    prom_free(baker->ids);
     prom_free(baker);
 }
 
@@ -73,29 +75,73 @@ static void frame_of_direction(const float out[3], float right[3], float up[3])
     glm_vec3_cross((float *)out, right, up);
 }
 
-void prom_baker_take_views(prom_baker *baker, float radius, prom_views *views)
+// Where a view begins, from the top left.
+static void place_of_view(uint32_t view, uint32_t *x, uint32_t *y)
+{
+    if (view < PROM_DIRS) {
+        *x = view % COLUMNS * PROM_VIEW_PX;
+        *y = view / COLUMNS * PROM_VIEW_PX;
+    } else {
+        *x = (view - PROM_DIRS) % LARGE_COLUMNS * PROM_VIEW_LARGE_PX;
+        *y = SMALL_HEIGHT + (view - PROM_DIRS) / LARGE_COLUMNS * PROM_VIEW_LARGE_PX;
+    }
+}
+
+static void draw_view(prom_baker *baker, uint32_t view, float radius)
+{
+    const uint32_t side = prom_view_px(view);
+    prom_pass pass = {.width = side, .height = side, .output = PROM_OUTPUT_LIT};
+    float out[3], right[3], up[3];
+    prom_direction_of_bin(view < PROM_DIRS ? view : view - PROM_DIRS, out);
+    frame_of_direction(out, right, up);
+    orthographic(right, up, out, radius, radius, 2.0f * radius, pass.projection);
+    place_of_view(view, &pass.x, &pass.y);
+    pass.y = HEIGHT - pass.y - side; // the viewport counts from the bottom
+    prom_draw_list_submit(baker->list, baker->target, &pass);
+}
+
+void prom_baker_draw_views(prom_baker *baker, float radius)
 {
     prom_target_clear(baker->target, nothing);
-    for (uint32_t dir = 0; dir < PROM_DIRS; dir++) {
-        float out[3], right[3], up[3];
-        prom_direction_of_bin(dir, out);
-        frame_of_direction(out, right, up);
-        // The viewport counts from the bottom, the read-back from the top.
-        prom_pass pass = {
-            .x = dir % PROM_ATLAS_COLUMNS * PROM_VIEW_PX,
-            .y = PROM_ATLAS_HEIGHT - (dir / PROM_ATLAS_COLUMNS + 1) * PROM_VIEW_PX,
-            .width = PROM_VIEW_PX,
-            .height = PROM_VIEW_PX,
-            .output = PROM_OUTPUT_LIT,
-        };
-        orthographic(right, up, out, radius, radius, 2.0f * radius, pass.projection);
-        prom_draw_list_submit(baker->list, baker->target, &pass);
+    baker->large = false;
+    for (uint32_t v = 0; v < PROM_DIRS; v++) draw_view(baker, v, radius);
+}
+
+void prom_baker_draw_large_views(prom_baker *baker, float radius)
+{
+    baker->large = true;
+    for (uint32_t v = PROM_DIRS; v < PROM_VIEWS; v++) draw_view(baker, v, radius);
+}
+
+void prom_baker_read_views(prom_baker *baker, prom_views *views)
+{
+    const uint32_t height = baker->large ? HEIGHT : SMALL_HEIGHT;
+    prom_target_read_rgba(baker->target, 0, HEIGHT - height, WIDTH, height, baker->pixels[0]);
+    prom_views_clear(views);
+    for (uint32_t v = 0; v < (baker->large ? PROM_VIEWS : PROM_DIRS); v++) {
+        uint32_t x, y;
+        place_of_view(v, &x, &y);
+        prom_views_add(views, (const prom_rgba *)baker->pixels + (size_t)y * WIDTH + x, WIDTH);
     }
-    prom_target_read_rgba(baker->target, 0, 0, PROM_ATLAS_WIDTH, PROM_ATLAS_HEIGHT,
-                          views->rgba[0]);
-    if (views->ids)
-        prom_target_read_ids(baker->target, 0, 0, PROM_ATLAS_WIDTH, PROM_ATLAS_HEIGHT,
-                             views->ids);
+}
+
+void prom_baker_read_shares(prom_baker *baker, uint32_t item_count,
+                            uint16_t (*shares)[PROM_DIRS])
+{
+    prom_target_read_ids(baker->target, 0, HEIGHT - SMALL_HEIGHT, WIDTH, SMALL_HEIGHT,
+                         baker->ids);
+    for (uint32_t dir = 0; dir < PROM_DIRS; dir++) {
+        uint32_t x, y;
+        place_of_view(dir, &x, &y);
+        prom_view_shares(baker->ids + (size_t)y * WIDTH + x, WIDTH, dir, item_count, shares);
+    }
+}
+
+void prom_baker_take_views(prom_baker *baker, float radius, bool large, prom_views *views)
+{
+    prom_baker_draw_views(baker, radius);
+    if (large) prom_baker_draw_large_views(baker, radius);
+    prom_baker_read_views(baker, views);
 }
 
 void prom_baker_take_faces(prom_baker *baker, const float half[3], prom_output output,

@@ -35,8 +35,8 @@ typedef struct prom_shape_build {
     uint32_t level_count;
     prom_mesh merge; // a level with its materials baked to colours, for cluster meshes
     float merge_error;
-    uint64_t hash;                 // of the levels' meshes
-    uint64_t levels_key, leaf_key; // of its units of work
+    uint64_t hash;                  // of the levels' meshes
+    uint64_t levels_key, views_key; // of its units of work
 } prom_shape_build;
 
 // The meshes of a cluster's prototype: a fine and a coarse one.
@@ -76,7 +76,8 @@ typedef struct prom_build_state {
     prom_store *store;
     uint64_t program_key, device_key; // what every unit, and every measured unit, depends on
     uint32_t units, units_taken;      // as in the report
-    uint64_t *material_keys;          // per material: its values and its picture
+    uint32_t views_taken;
+    uint64_t *material_keys; // per material: its values and its picture
     prom_context *context;
     prom_renderer *renderer;
     prom_baker *baker;
@@ -128,12 +129,15 @@ uint64_t prom_key_of_device(const prom_context *context, uint64_t program_key);
 // Sets material_keys, once there are textures.
 void prom_keys_of_materials(prom_build_state *b);
 uint64_t prom_key_of_levels(const prom_build_state *b, uint32_t shape);
-uint64_t prom_key_of_leaf(const prom_build_state *b, uint32_t shape);
+// Of what is drawn of a leaf.
+uint64_t prom_key_of_leaf_views(const prom_build_state *b, uint32_t shape);
+// Of what is made of what a subject's views show.
+uint64_t prom_key_of_measured(const prom_build_state *b, uint64_t views_key);
 // Of a cluster, but for what it is made of: that is added, part by part, with
 // prom_key_add_placed.
 uint64_t prom_key_of_merge(const prom_build_state *b, uint32_t cluster);
-// Its bounds and its merge_key are set.
-uint64_t prom_key_of_cluster(const prom_build_state *b, uint32_t cluster);
+// Of what is drawn of it, in the same way. Its bounds and its merge_key are set.
+uint64_t prom_key_of_cluster_views(const prom_build_state *b, uint32_t cluster);
 // Adds the unit `part` and where it stands.
 void prom_key_add_placed(uint64_t *key, uint64_t part, const double origin[3],
                          const float basis[9]);

@@ -1,7 +1,5 @@
-#include "builder/measure.h"
+#include "builder/measure_private.h"
 
-#include "benefit/metric.h"
-#include "builder/measure_picture.h"
 #include "metaobj/base/alloc.h"
 #include "metaobj/base/hash.h"
 #include "metaobj/base/math.h"
@@ -10,86 +8,18 @@
 #include <stdio.h>
 #include <string.h>
 
-#define BACKGROUNDS 2
 #define GAP_STEP (PROM_VIEW_PX / PROM_GAP_PX)
 
 // More than one in twenty of a footprint's pixels this wrong, and a part of the object is
-// missing or of another colour (by taste; seen on the scenes). In smaller pictures there are
-// too few pixels to say so.
+// missing or of another colour (by taste; seen on the scenes).
 #define VETO_PERCENTILE 0.95f
 #define VETO_ERROR 0.8f
-#define VETO_SIZE_PX 32.0f
 
-// What a thread works in.
-typedef struct scratch {
-    prom_metric *metric;
-    float (*patches)[4];          // the truth's, of all sizes
-    float (*whole)[4];            // a representation's at full size,
-    float (*small)[4];            // and at another
-    float (*between)[4];          // while it is reduced
-    uint8_t (*rgba)[4];           // over a background
-    float *truth;                 // features of the truth, of all sizes and backgrounds,
-    float *other;                 // and of a representation
-    float *map;                   // of errors
-    prom_patch sizes[PROM_SIZES]; // in patches
-    size_t features[PROM_SIZES];  // in truth, of the first background
-} scratch;
-
-struct prom_measure {
-    prom_measured how;
-    const prom_metric_class *metric; // NULL: constant
-    uint32_t pad;                    // pixels around a picture that the metric looks at
-    prom_encoder encoder;
-    scratch *scratches;
-    unsigned threads;
-};
-
-// ---- memory
-
-static size_t size_pixels(uint32_t size)
-{
-    size_t side = (size_t)ceilf(prom_size_of_bin(size));
-    return side * side;
-}
-
-static size_t window_floats(const prom_measure *m, const prom_metric *metric, uint32_t size)
-{
-    uint32_t side = (uint32_t)ceilf(prom_size_of_bin(size)) + 2 * m->pad;
-    return prom_metric_feature_floats(metric, side, side);
-}
-
-static void init_scratch(const prom_measure *m, scratch *s)
-{
-    const uint32_t side = PROM_VIEW_PX + 2 * m->pad;
-    const size_t window = (size_t)side * side;
-    size_t pixels = 0, floats = 0;
-    s->metric = prom_metric_create(m->how.metric, m->how.ppd, side, window, 1);
-    for (uint32_t size = 0; size < PROM_SIZES; size++) {
-        pixels += size_pixels(size);
-        floats += BACKGROUNDS * window_floats(m, s->metric, size);
-    }
-    s->patches = prom_alloc(pixels, sizeof *s->patches);
-    s->whole = prom_alloc(PROM_VIEW_PIXELS, sizeof *s->whole);
-    s->small = prom_alloc(PROM_VIEW_PIXELS, sizeof *s->small);
-    s->between = prom_alloc(PROM_VIEW_PIXELS, sizeof *s->between);
-    s->rgba = prom_alloc(window, sizeof *s->rgba);
-    s->truth = prom_alloc(floats, sizeof *s->truth);
-    s->other = prom_alloc(window_floats(m, s->metric, PROM_SIZES - 1), sizeof *s->other);
-    s->map = prom_alloc(window, sizeof *s->map);
-}
-
-static void finish_scratch(scratch *s)
-{
-    prom_metric_destroy(s->metric);
-    prom_free(s->patches);
-    prom_free(s->whole);
-    prom_free(s->small);
-    prom_free(s->between);
-    prom_free(s->rgba);
-    prom_free(s->truth);
-    prom_free(s->other);
-    prom_free(s->map);
-}
+// Coarse directions disagree about one between them if their accuracies differ by more than
+// this (of 255) at any size, or their coverages by this part of the larger one. Measured: see
+// docs/MEASURED.md.
+#define DISAGREE_ACCURACY 8
+#define DISAGREE_COVERAGE 0.25
 
 static uint32_t radius_of(const char *metric, float ppd)
 {
@@ -111,20 +41,25 @@ prom_measure *prom_measure_create(const prom_measure_options *options, float mea
         .veto_error = VETO_ERROR};
     snprintf(m->how.metric, sizeof m->how.metric, "%s", name);
     m->metric = prom_metric_named(name);
+    m->everywhere = options->everywhere;
+    pthread_mutex_init(&m->lock, NULL);
+    pthread_cond_init(&m->coarse_done, NULL);
     if (!m->metric) return m;
     m->pad = radius_of(name, m->how.ppd);
     prom_encoder_init(&m->encoder);
     m->threads = prom_thread_count();
     m->scratches = prom_calloc(m->threads, sizeof *m->scratches);
-    for (unsigned t = 0; t < m->threads; t++) init_scratch(m, &m->scratches[t]);
+    for (unsigned t = 0; t < m->threads; t++) m->scratches[t] = measure_scratch_create(m);
     return m;
 }
 
 void prom_measure_destroy(prom_measure *m)
 {
     if (!m) return;
-    for (unsigned t = 0; t < m->threads; t++) finish_scratch(&m->scratches[t]);
+    for (unsigned t = 0; t < m->threads; t++) measure_scratch_destroy(m->scratches[t]);
     prom_free(m->scratches);
+    pthread_cond_destroy(&m->coarse_done);
+    pthread_mutex_destroy(&m->lock);
     prom_free(m);
 }
 
@@ -137,216 +72,219 @@ uint64_t prom_measure_key(const prom_measure *m)
 {
     prom_measured how = m->how;
     if (!m->metric || !m->metric->uses_ppd) how.ppd = 0.0f;
-    return prom_hash(&how, sizeof how, 0);
+    return prom_hash(&how, sizeof how, m->everywhere);
 }
 _Static_assert(sizeof(prom_measured) == PROM_METRIC_NAME_BYTES + 5 * sizeof(float),
                "hashed without padding");
 
-// ---- the part of a view in which something is to be seen: all else is background in every
-// picture and cannot err
+// ---- gaps
 
-static prom_part covered_part(const prom_views *views, uint32_t dir)
+static bool is_covered(const prom_views *views, uint32_t dir, uint32_t x, uint32_t y)
 {
-    uint32_t x0 = PROM_VIEW_PX, y0 = PROM_VIEW_PX, x1 = 0, y1 = 0;
-    for (uint32_t y = 0; y < PROM_VIEW_PX; y++) {
-        const uint8_t(*p)[4] =
-            views->rgba + prom_view_start(dir) + (size_t)y * PROM_ATLAS_WIDTH;
-        uint32_t first = 0, last = PROM_VIEW_PX;
-        while (first < last && p[first][3] < 128) first++;
-        if (first == last) continue;
-        while (p[last - 1][3] < 128) last--;
-        if (first < x0) x0 = first;
-        if (last > x1) x1 = last;
-        if (y < y0) y0 = y;
-        y1 = y + 1;
-    }
-    return x1 ? (prom_part){x0, y0, x1 - x0, y1 - y0} : (prom_part){0};
+    const prom_part *part = &views->at[dir].part;
+    if (x < part->x || y < part->y || x - part->x >= part->width || y - part->y >= part->height)
+        return false;
+    size_t i = (size_t)(y - part->y) * part->width + x - part->x;
+    return views->pixels.data[views->at[dir].first + i][3] >= PROM_COVERED;
 }
 
-static prom_part part_of_all(const prom_views *truth, prom_comparison *const *others,
-                             size_t count, uint32_t dir)
-{
-    prom_part part = covered_part(truth, dir);
-    for (size_t i = 0; i < count; i++)
-        part = prom_part_around(part, covered_part(others[i]->views, dir));
-    return part.width ? part : (prom_part){0, 0, 1, 1};
-}
-
-static void take_view(const prom_views *views, uint32_t dir, prom_part part, prom_patch *patch)
-{
-    prom_patch_take((const uint8_t(*)[4])views->rgba + prom_view_start(dir), PROM_ATLAS_WIDTH,
-                    part, patch);
-}
-
-// ---- coverage
-
-static uint16_t covered_share(const prom_views *views, uint32_t dir)
+// Pixels of a view that are covered, of those of the gap pixel at a place.
+static uint32_t covered_at(const prom_views *views, uint32_t dir, uint32_t x, uint32_t y)
 {
     uint32_t covered = 0;
-    for (uint32_t y = 0; y < PROM_VIEW_PX; y++) {
-        const uint8_t(*p)[4] =
-            views->rgba + prom_view_start(dir) + (size_t)y * PROM_ATLAS_WIDTH;
-        for (uint32_t x = 0; x < PROM_VIEW_PX; x++) covered += p[x][3] >= 128;
-    }
-    double share = covered / (GLM_PI / 4.0 * PROM_VIEW_PIXELS);
-    return (uint16_t)(65535.0 * (share > 1 ? 1 : share) + 0.5);
-}
-
-// Pixels of a view that are covered, of the GAP_STEP x GAP_STEP at a place.
-static uint32_t covered_around(const uint8_t (*rgba)[4])
-{
-    uint32_t covered = 0;
-    for (uint32_t y = 0; y < GAP_STEP; y++)
-        for (uint32_t x = 0; x < GAP_STEP; x++)
-            covered += rgba[y * PROM_ATLAS_WIDTH + x][3] >= 128;
+    for (uint32_t dy = 0; dy < GAP_STEP; dy++)
+        for (uint32_t dx = 0; dx < GAP_STEP; dx++)
+            covered += is_covered(views, dir, x + dx, y + dy);
     return covered;
 }
 
 static uint32_t count_gaps(const prom_views *truth, const prom_views *other, uint32_t dir)
 {
+    const prom_part *part = &truth->at[dir].part;
+    const uint32_t left = part->x / GAP_STEP * GAP_STEP, top = part->y / GAP_STEP * GAP_STEP;
     uint32_t gaps = 0;
-    for (uint32_t y = 0; y < PROM_VIEW_PX; y += GAP_STEP)
-        for (uint32_t x = 0; x < PROM_VIEW_PX; x += GAP_STEP) {
-            size_t at = prom_view_start(dir) + (size_t)y * PROM_ATLAS_WIDTH + x;
-            gaps +=
-                !covered_around((const uint8_t(*)[4])other->rgba + at) &&
-                covered_around((const uint8_t(*)[4])truth->rgba + at) == GAP_STEP * GAP_STEP;
-        }
+    for (uint32_t y = top; y < part->y + part->height; y += GAP_STEP)
+        for (uint32_t x = left; x < part->x + part->width; x += GAP_STEP)
+            gaps += !covered_at(other, dir, x, y) &&
+                    covered_at(truth, dir, x, y) == GAP_STEP * GAP_STEP;
     return gaps;
 }
 
-// ---- errors
+// ---- views
 
-// The features of the patch over a background.
-static void take_features(const prom_measure *m, const prom_patch *patch, float background,
-                          scratch *s, float *features)
+// Whether a representation is to be compared in a view.
+static bool is_wanted(const prom_comparison *other, uint32_t view)
 {
-    prom_picture picture = {.width = patch->part.width + 2 * m->pad,
-                            .height = patch->part.height + 2 * m->pad,
-                            .channels = 4,
-                            .pixels = s->rgba};
-    prom_patch_compose(patch, &m->encoder, background, m->pad, s->rgba);
-    prom_metric_features(s->metric, &picture, features);
+    return view < PROM_DIRS ? other->compared[view] : view < other->views->count;
 }
 
-// The true object from one direction, at all sizes, into the scratch.
-static void take_truth(const prom_measure *m, const prom_views *views, uint32_t dir,
-                       prom_part part, scratch *s)
+static uint8_t *accuracies_in(prom_comparison *other, uint32_t view)
 {
-    float(*pixels)[4] = s->patches, *features = s->truth;
-    for (uint32_t size = PROM_SIZES; size-- > 0;) {
-        prom_patch *patch = &s->sizes[size];
-        patch->pixels = pixels;
-        if (size == PROM_SIZES - 1)
-            take_view(views, dir, part, patch);
-        else
-            prom_patch_reduce(&s->sizes[PROM_SIZES - 1], PROM_VIEW_PX / prom_size_of_bin(size),
-                              s->between, patch);
-        pixels += prom_part_pixels(&patch->part);
-        s->features[size] = (size_t)(features - s->truth);
-        for (int b = 0; b < BACKGROUNDS; b++) {
-            take_features(m, patch, m->how.background[b], s, features);
-            features += prom_metric_feature_floats(s->metric, patch->part.width + 2 * m->pad,
-                                                   patch->part.height + 2 * m->pad);
+    return view < PROM_DIRS ? other->accuracy.bins[view]
+                            : other->accuracy.large[view - PROM_DIRS];
+}
+
+// The part of a view in which something is to be seen: all else is background in every picture
+// and cannot err. Width 0: nothing is wanted.
+static prom_part part_of_all(const prom_measuring *measuring, uint32_t view)
+{
+    prom_part part = {0};
+    bool wanted = false;
+    for (size_t i = 0; i < measuring->count; i++) {
+        const prom_comparison *other = measuring->others[i];
+        if (!is_wanted(other, view)) continue;
+        part = prom_part_around(part, other->views->at[view].part);
+        wanted = true;
+    }
+    if (!wanted) return part;
+    part = prom_part_around(part, measuring->truth->at[view].part);
+    return part.width ? part : (prom_part){0, 0, 1, 1};
+}
+
+static void compare_in_view(const prom_measure *m, unsigned thread,
+                            const prom_measuring *measuring, uint32_t view)
+{
+    const prom_part part = part_of_all(measuring, view);
+    if (!part.width) return;
+    if (!m->metric) { // constant
+        for (size_t i = 0; i < measuring->count; i++)
+            if (is_wanted(measuring->others[i], view))
+                memset(accuracies_in(measuring->others[i], view), 127,
+                       sizes_of_view(view).count);
+        return;
+    }
+    measure_scratch *s = m->scratches[thread];
+    measure_take_truth(m, s, measuring->truth, view, part);
+    for (size_t i = 0; i < measuring->count; i++) {
+        prom_comparison *other = measuring->others[i];
+        if (is_wanted(other, view))
+            measure_compare(m, s, other->views, view, part, accuracies_in(other, view));
+    }
+}
+
+// ---- from coarse to fine
+
+static bool coverages_disagree(const prom_views *truth, uint32_t dir, const uint32_t *around,
+                               uint32_t count)
+{
+    uint32_t least = truth->at[dir].covered, most = least;
+    for (uint32_t k = 0; k < count; k++) {
+        uint32_t covered = truth->at[around[k]].covered;
+        if (covered < least) least = covered;
+        if (covered > most) most = covered;
+    }
+    return most - least > DISAGREE_COVERAGE * most;
+}
+
+static bool accuracies_disagree(const prom_accuracy_row *row, const uint32_t *around,
+                                uint32_t count)
+{
+    for (uint32_t s = 0; s < PROM_SIZES; s++) {
+        uint8_t least = 255, most = 0;
+        for (uint32_t k = 0; k < count; k++) {
+            uint8_t accuracy = row->bins[around[k]][s];
+            if (accuracy < least) least = accuracy;
+            if (accuracy > most) most = accuracy;
         }
+        if (most - least > DISAGREE_ACCURACY) return true;
+    }
+    return false;
+}
+
+static void interpolate(prom_accuracy_row *row, uint32_t dir, const uint32_t *around,
+                        uint32_t count)
+{
+    for (uint32_t s = 0; s < PROM_SIZES; s++) {
+        uint32_t sum = 0;
+        for (uint32_t k = 0; k < count; k++) sum += row->bins[around[k]][s];
+        row->bins[dir][s] = (uint8_t)(sum / count);
     }
 }
 
-static float larger_coverage(const prom_patch *a, const prom_patch *b, size_t i)
+// Marks what is to be compared in a fine direction, and interpolates the rest.
+static void choose_fine(const prom_measure *m, const prom_measuring *measuring, uint32_t dir)
 {
-    return fmaxf(a->pixels[i][3], b->pixels[i][3]);
-}
-
-// The sum of the errors over the window, or of their squares.
-static double sum_errors(const prom_measure *m, const float *map, size_t count)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < count; i++) sum += m->metric->squares ? map[i] * map[i] : map[i];
-    return sum;
-}
-
-// Whether more of the footprint's pixels are too wrong than may be.
-static bool is_vetoed(const prom_measure *m, const prom_patch *a, const prom_patch *b,
-                      const float *map)
-{
-    const uint32_t width = a->part.width;
-    size_t footprint = 0, wrong = 0;
-    for (uint32_t y = 0; y < a->part.height; y++) {
-        const float *row = map + (size_t)(y + m->pad) * (width + 2 * m->pad) + m->pad;
-        for (uint32_t x = 0; x < width; x++) {
-            if (larger_coverage(a, b, (size_t)y * width + x) < 0.5f) continue;
-            footprint++;
-            wrong += row[x] > m->how.veto_error;
-        }
-    }
-    return (double)wrong > (1.0 - (double)m->how.veto_percentile) * (double)footprint;
-}
-
-// Accuracy of a patch against the truth's of that size.
-static uint8_t compare_size(const prom_measure *m, uint32_t size, const prom_patch *patch,
-                            scratch *s)
-{
-    const prom_patch *truth = &s->sizes[size];
-    const uint32_t wide = patch->part.width + 2 * m->pad;
-    const uint32_t high = patch->part.height + 2 * m->pad;
-    const float *features = s->truth + s->features[size];
-    double area = 0.0, error = 0.0;
-    for (size_t i = 0; i < prom_part_pixels(&patch->part); i++)
-        area += larger_coverage(truth, patch, i);
-    if (area < 1.0) area = 1.0; // less than a pixel is judged as if it were one
-    for (int b = 0; b < BACKGROUNDS; b++) {
-        take_features(m, patch, m->how.background[b], s, s->other);
-        prom_metric_compare(s->metric, features, s->other, wide, high, s->map);
-        features += prom_metric_feature_floats(s->metric, wide, high);
-        if (prom_size_of_bin(size) >= VETO_SIZE_PX && is_vetoed(m, truth, patch, s->map))
-            return 0;
-        double mean = sum_errors(m, s->map, (size_t)wide * high) / area;
-        error += (m->metric->squares ? sqrt(mean) : mean) / BACKGROUNDS;
-    }
-    return (uint8_t)(255.0 * (error < 1.0 ? 1.0 - error : 0.0));
-}
-
-static void compare(const prom_measure *m, uint32_t dir, prom_part part, prom_comparison *other,
-                    scratch *s)
-{
-    prom_patch whole = {.pixels = s->whole}, small = {.pixels = s->small};
-    take_view(other->views, dir, part, &whole);
-    for (uint32_t size = 0; size < PROM_SIZES; size++) {
-        if (size < PROM_SIZES - 1)
-            prom_patch_reduce(&whole, PROM_VIEW_PX / prom_size_of_bin(size), s->between,
-                              &small);
-        other->accuracy.bins[dir][size] =
-            compare_size(m, size, size < PROM_SIZES - 1 ? &small : &whole, s);
+    uint32_t around[4];
+    uint32_t count = prom_coarse_directions_around(dir, around);
+    bool all = m->everywhere || coverages_disagree(measuring->truth, dir, around, count);
+    for (size_t i = 0; i < measuring->count; i++) {
+        prom_comparison *other = measuring->others[i];
+        other->compared[dir] = all || accuracies_disagree(&other->accuracy, around, count);
+        if (!other->compared[dir]) interpolate(&other->accuracy, dir, around, count);
     }
 }
 
-void prom_measure_direction(prom_measure *m, unsigned thread, uint32_t dir,
-                            const prom_views *truth, uint16_t *coverage,
-                            prom_comparison *const *others, size_t count)
+static void note_coarse_done(prom_measure *m, prom_measuring *measuring)
 {
-    *coverage = covered_share(truth, dir);
-    for (size_t i = 0; i < count; i++) {
-        others[i]->gaps[dir] = count_gaps(truth, others[i]->views, dir);
-        memset(others[i]->accuracy.bins[dir], 127, PROM_SIZES);
-    }
-    if (!m->metric || !count) return;
-    scratch *s = &m->scratches[thread];
-    const prom_part part = part_of_all(truth, others, count, dir);
-    take_truth(m, truth, dir, part, s);
-    for (size_t i = 0; i < count; i++) compare(m, dir, part, others[i], s);
+    pthread_mutex_lock(&m->lock);
+    if (--measuring->coarse_left == 0) pthread_cond_broadcast(&m->coarse_done);
+    pthread_mutex_unlock(&m->lock);
 }
 
-void prom_measure_shares(const prom_views *views, uint32_t dir, uint32_t item_count,
-                         uint16_t (*shares)[PROM_DIRS])
+static void wait_for_coarse(prom_measure *m, const prom_measuring *measuring)
 {
-    uint32_t *counts = prom_calloc(item_count, sizeof *counts);
-    uint64_t sum = 0;
-    for (uint32_t y = 0; y < PROM_VIEW_PX; y++) {
-        const uint32_t *ids = views->ids + prom_view_start(dir) + (size_t)y * PROM_ATLAS_WIDTH;
-        for (uint32_t x = 0; x < PROM_VIEW_PX; x++)
-            if (ids[x] < item_count) counts[ids[x]]++, sum++;
+    pthread_mutex_lock(&m->lock);
+    while (measuring->coarse_left) pthread_cond_wait(&m->coarse_done, &m->lock);
+    pthread_mutex_unlock(&m->lock);
+}
+
+static void measure_direction(prom_measure *m, unsigned thread, prom_measuring *measuring,
+                              uint32_t dir)
+{
+    const bool coarse = dir < PROM_DIRS_COARSE;
+    for (size_t i = 0; i < measuring->count; i++) {
+        prom_comparison *other = measuring->others[i];
+        other->gaps[dir] = count_gaps(measuring->truth, other->views, dir);
+        if (coarse) other->compared[dir] = true;
     }
-    for (uint32_t c = 0; c < item_count; c++)
-        shares[c][dir] = sum ? (uint16_t)(65535.0 * counts[c] / (double)sum + 0.5) : 0;
-    prom_free(counts);
+    if (!coarse) {
+        wait_for_coarse(m, measuring);
+        choose_fine(m, measuring, dir);
+    }
+    compare_in_view(m, thread, measuring, dir);
+    if (coarse) note_coarse_done(m, measuring);
+}
+
+void prom_measuring_init(prom_measuring *measuring, const prom_views *truth,
+                         prom_comparison *const *others, size_t count)
+{
+    *measuring = (prom_measuring){truth, others, count, PROM_DIRS_COARSE};
+    for (size_t i = 0; i < count; i++)
+        memset(&others[i]->accuracy, 0, sizeof others[i]->accuracy);
+}
+
+// The large views first: they take longest.
+void prom_measure_step(prom_measure *m, unsigned thread, prom_measuring *measuring, size_t step)
+{
+    if (step < PROM_DIRS_LARGE)
+        compare_in_view(m, thread, measuring, PROM_DIRS + (uint32_t)step);
+    else
+        measure_direction(m, thread, measuring, (uint32_t)step - PROM_DIRS_LARGE);
+}
+
+// ---- along an axis from which nothing is seen
+
+// What is left at the large sizes along the axes that see the object, of what they have at the
+// largest of the others.
+static void fill_unseen_axes(const prom_views *truth, prom_accuracy_row *row)
+{
+    uint32_t before = 0, after[PROM_SIZES_LARGE] = {0};
+    for (uint32_t axis = 0; axis < PROM_DIRS_LARGE; axis++) {
+        if (!truth->at[PROM_DIRS + axis].covered) continue;
+        before += row->bins[axis][PROM_SIZES - 1];
+        for (uint32_t s = 0; s < PROM_SIZES_LARGE; s++) after[s] += row->large[axis][s];
+    }
+    for (uint32_t axis = 0; axis < PROM_DIRS_LARGE; axis++) {
+        if (truth->at[PROM_DIRS + axis].covered) continue;
+        const uint32_t own = row->bins[axis][PROM_SIZES - 1];
+        for (uint32_t s = 0; s < PROM_SIZES_LARGE; s++)
+            row->large[axis][s] = (uint8_t)(after[s] < before ? own * after[s] / before : own);
+    }
+}
+
+void prom_measure_end(prom_measuring *measuring)
+{
+    for (size_t i = 0; i < measuring->count; i++)
+        if (measuring->others[i]->views->count == PROM_VIEWS)
+            fill_unseen_axes(measuring->truth, &measuring->others[i]->accuracy);
 }

@@ -33,18 +33,26 @@ prom_part prom_part_reduced(prom_part part, float step)
     return r;
 }
 
-void prom_patch_take(const uint8_t (*rgba)[4], size_t row_pixels, prom_part part,
-                     prom_patch *patch)
+static void take_pixel(const uint8_t *rgba, float *out)
 {
-    float(*out)[4] = patch->pixels;
-    rgba += part.y * row_pixels + part.x;
-    for (uint32_t y = 0; y < part.height; y++, rgba += row_pixels, out += part.width)
-        for (uint32_t x = 0; x < part.width; x++) {
-            const float covered = rgba[x][3] >= 128 ? 1.0f : 0.0f;
-            for (int c = 0; c < 3; c++) out[x][c] = covered * prom_srgb8_to_linear(rgba[x][c]);
-            out[x][3] = covered;
-        }
+    if (rgba[3] < PROM_COVERED) return;
+    for (int c = 0; c < 3; c++) out[c] = prom_srgb8_to_linear(rgba[c]);
+    out[3] = 1.0f;
+}
+
+void prom_patch_take(const prom_views *views, uint32_t view, prom_part part, prom_patch *patch)
+{
+    const prom_part *from = &views->at[view].part;
+    const prom_rgba *rgba = views->pixels.data + views->at[view].first;
     patch->part = part;
+    memset(patch->pixels, 0, prom_part_pixels(&part) * sizeof *patch->pixels);
+    const uint32_t left = most(part.x, from->x), top = most(part.y, from->y);
+    const uint32_t right = least(part.x + part.width, from->x + from->width);
+    const uint32_t bottom = least(part.y + part.height, from->y + from->height);
+    for (uint32_t y = top; y < bottom; y++)
+        for (uint32_t x = left; x < right; x++)
+            take_pixel(rgba[(size_t)(y - from->y) * from->width + x - from->x],
+                       patch->pixels[(size_t)(y - part.y) * part.width + x - part.x]);
 }
 
 // ---- area averages

@@ -3,13 +3,7 @@
 #ifndef PROM_BUILDER_MEASURE_PICTURE_H
 #define PROM_BUILDER_MEASURE_PICTURE_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-// A rectangle of whole pixels.
-typedef struct prom_part {
-    uint32_t x, y, width, height;
-} prom_part;
+#include "builder/views.h"
 
 // What a part of a picture shows: linear colour times coverage, and coverage.
 typedef struct prom_patch {
@@ -28,9 +22,8 @@ prom_part prom_part_around(prom_part a, prom_part b);
 // pixel i of the reduced picture covers [i, i + 1) * step.
 prom_part prom_part_reduced(prom_part part, float step);
 
-// Encoded pixels, rows of row_pixels, as a patch: covered where alpha is at least 128.
-void prom_patch_take(const uint8_t (*rgba)[4], size_t row_pixels, prom_part part,
-                     prom_patch *patch);
+// A part of a view as a patch; the part may reach beyond what the view covers.
+void prom_patch_take(const prom_views *views, uint32_t view, prom_part part, prom_patch *patch);
 // Area averages; nothing is outside the patch. between: room for patch->part.height rows of the
 // result. The result's pixels are there; its part is set.
 void prom_patch_reduce(const prom_patch *patch, float step, float (*between)[4],

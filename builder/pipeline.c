@@ -77,7 +77,7 @@ static prom_status open_store(prom_build_state *b, prom_error *error)
     static const prom_unit_kind redo[] = {
         [PROM_BUILD_FROM_NOWHERE] = PROM_UNIT_COUNT,
         [PROM_BUILD_FROM_START] = PROM_UNIT_LEVELS,
-        [PROM_BUILD_FROM_LEAVES] = PROM_UNIT_LEAF,
+        [PROM_BUILD_FROM_LEAVES] = PROM_UNIT_LEAF_VIEWS,
         [PROM_BUILD_FROM_CLUSTERS] = PROM_UNIT_MERGE,
         [PROM_BUILD_FROM_VIEW_CELLS] = PROM_UNIT_VIEW_CELL,
     };
@@ -272,6 +272,7 @@ static void fill_report(const prom_build_state *b, const char *path, prom_build_
         .representations = m->rep_count,
         .units = b->units,
         .units_taken = b->units_taken,
+        .views_taken = b->views_taken,
     };
     for (uint32_t i = 0; i < m->tree_count; i++)
         if (m->child_count[i] > report->max_children) report->max_children = m->child_count[i];

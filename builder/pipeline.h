@@ -29,6 +29,7 @@ typedef struct prom_build_options {
     uint32_t memory_mb;
     // What earlier builds left in X.prom.work:
     prom_build_from from;   // stages from this one on are done anew
+    bool keep_views;        // pictures that are drawn are kept: other metrics need not draw
     bool drop_work;         // it is deleted when the build has succeeded
     bool view_cells_follow; // prom_view_cells_build will be called for the model: what earlier
                             // calls of it left is kept
@@ -38,6 +39,7 @@ typedef struct prom_build_report {
     uint64_t source_triangles; // instanced
     uint32_t objects, prototypes, nodes, max_children, representations;
     uint32_t units, units_taken; // of work: all, and those taken from earlier builds
+    uint32_t views_taken;        // prototypes measured anew in pictures from earlier builds
     uint64_t file_bytes, work_bytes, peak_bytes;
 } prom_build_report;
 

@@ -1,6 +1,6 @@
 // Clusters, upwards: merged meshes on all cores, then coverage, shares, impostors and accuracy
 // on the device. The truth that a cluster is measured against is its leaves, each at a level
-// whose error stays under half a pixel of the largest view.
+// whose error stays under half a pixel of the view.
 #include "builder/subject.h"
 
 #include "builder/cluster_mesh.h"
@@ -162,11 +162,25 @@ static uint32_t level_for(const prom_build_state *b, const prom_object *object,
     return level;
 }
 
+// The item of a leaf around `center` (world), in views of px_per_unit.
+static prom_draw_item true_item(const prom_build_state *b, const prom_object *object,
+                                uint32_t id, const double origin[3], float px_per_unit)
+{
+    uint32_t level = level_for(b, object, px_per_unit);
+    prom_draw_item item = {.mesh = b->shapes[object->shape].levels[level].device_id,
+                           .texture = PROM_NONE,
+                           .id = id};
+    for (int a = 0; a < 3; a++) item.origin[a] = (float)origin[a];
+    memcpy(item.basis, object->placement.basis, sizeof item.basis);
+    return item;
+}
+
 // All leaves below `node`, around `center` (world), with one id, to the subject's items and
 // key.
 static void collect_truth(prom_subject *s, uint32_t node, uint32_t id, const double center[3],
                           float px_per_unit)
 {
+    const float larger = (float)PROM_VIEW_LARGE_PX / PROM_VIEW_PX;
     const prom_build_state *b = s->build;
     const prom_tree_node *n = &b->tree.nodes.data[node];
     if (n->object == PROM_NONE) {
@@ -175,18 +189,12 @@ static void collect_truth(prom_subject *s, uint32_t node, uint32_t id, const dou
         return;
     }
     const prom_object *object = &b->objects.objects.data[n->object];
-    const prom_shape_build *shape = &b->shapes[object->shape];
-    uint32_t level = level_for(b, object, px_per_unit);
-    prom_draw_item item = {
-        .mesh = shape->levels[level].device_id, .texture = PROM_NONE, .id = id};
     double origin[3];
-    for (int a = 0; a < 3; a++) {
-        origin[a] = object->placement.origin[a] - center[a];
-        item.origin[a] = (float)origin[a];
-    }
-    memcpy(item.basis, object->placement.basis, sizeof item.basis);
-    prom_array_push(&s->items, item);
-    prom_key_add_placed(&s->key, shape->leaf_key + id, origin, item.basis);
+    for (int a = 0; a < 3; a++) origin[a] = object->placement.origin[a] - center[a];
+    prom_array_push(&s->items, true_item(b, object, id, origin, px_per_unit));
+    prom_array_push(&s->large_items, true_item(b, object, id, origin, larger * px_per_unit));
+    prom_key_add_placed(&s->views_key, b->shapes[object->shape].views_key + id, origin,
+                        object->placement.basis);
 }
 
 static void collect_children(prom_subject *s, uint32_t node)
@@ -211,8 +219,9 @@ static prom_status begin(prom_subject *s, uint32_t index, prom_error *error)
         proto->flags |= PROM_PROTO_SURFACE;
     if (!cluster->mixed && cluster->layer == PROM_LAYER_BLENDED)
         proto->flags |= PROM_PROTO_BLENDED;
-    s->key = prom_key_of_cluster(b, index);
+    s->views_key = prom_key_of_cluster_views(b, index);
     collect_children(s, cluster->node);
+    s->key = prom_key_of_measured(b, s->views_key);
     s->child_count = cluster->child_count;
     s->shares = prom_calloc(s->child_count, sizeof *s->shares);
     for (uint32_t l = 0; l < meshes->level_count; l++) {
@@ -229,7 +238,7 @@ static prom_status begin(prom_subject *s, uint32_t index, prom_error *error)
 static prom_status draw(prom_subject *s, uint32_t index, prom_error *error)
 {
     const prom_tree_cluster *cluster = &s->build->tree.clusters.data[index];
-    prom_subject_take_truth(s, true);
+    prom_subject_take_truth(s);
     prom_status status = PROM_OK;
     for (uint32_t l = 0; l < s->count && !status; l++)
         status = prom_subject_take_views(s, l, PROM_NONE, error);
@@ -289,7 +298,8 @@ static void free_meshes(prom_build_state *b, uint32_t height, const uint32_t *la
 static prom_status run_row(prom_build_state *b, const uint32_t *clusters, uint32_t count,
                            uint32_t *last_need, prom_progress *progress, prom_error *error)
 {
-    static const prom_subject_class class = {PROM_UNIT_CLUSTER, begin, draw, NULL, NULL};
+    static const prom_subject_class class = {
+        PROM_UNIT_CLUSTER, PROM_UNIT_CLUSTER_VIEWS, begin, draw, NULL, NULL};
     prom_status status = merge_row(b, clusters, count, error);
     if (status) return status;
     for (uint32_t i = 0; i < count; i++) {

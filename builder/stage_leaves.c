@@ -36,7 +36,8 @@ static prom_status begin(prom_subject *s, uint32_t p, prom_error *error)
     bool backdrop = b->objects.shapes.data[p].layer == PROM_LAYER_BACKDROP;
     fill_prototype(b, p);
     s->prototype = p;
-    s->key = shape->leaf_key = prom_key_of_leaf(b, p);
+    s->views_key = shape->views_key = prom_key_of_leaf_views(b, p);
+    s->key = prom_key_of_measured(b, s->views_key);
     for (uint32_t l = 0; l < shape->level_count; l++) {
         prom_level *level = &shape->levels[l];
         prom_representation rep = {.kind = PROM_REP_MESH,
@@ -70,7 +71,7 @@ static prom_status draw(prom_subject *s, uint32_t p, prom_error *error)
     const prom_shape_build *shape = &b->shapes[p];
     prom_layer layer = b->objects.shapes.data[p].layer;
     if (layer == PROM_LAYER_BACKDROP) return PROM_OK;
-    prom_subject_take_truth(s, false);
+    prom_subject_take_truth(s);
     for (uint32_t l = 1; l < shape->level_count; l++) {
         prom_status status = prom_subject_take_views(s, l, shape->levels[l].device_id, error);
         if (status) return status;
@@ -157,7 +158,8 @@ static void plan_boxes(prom_build_state *b)
 
 prom_status prom_stage_leaves(prom_build_state *b, prom_error *error)
 {
-    static const prom_subject_class leaf = {PROM_UNIT_LEAF, begin, draw, amend, settled};
+    static const prom_subject_class leaf = {
+        PROM_UNIT_LEAF, PROM_UNIT_LEAF_VIEWS, begin, draw, amend, settled};
     uint32_t count = (uint32_t)b->objects.shapes.count;
     plan_boxes(b);
     b->measure = prom_measure_create(&b->options->measure, b->mean_luminance);

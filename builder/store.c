@@ -263,6 +263,13 @@ bool prom_store_get(prom_store *store, prom_unit_kind kind, uint64_t key, prom_p
     return good;
 }
 
+void prom_store_touch(prom_store *store, prom_unit_kind kind, uint64_t key)
+{
+    pthread_mutex_lock(&store->lock);
+    note_use(store, kind, key);
+    pthread_mutex_unlock(&store->lock);
+}
+
 // With the lock held.
 static bool insert(prom_store *s, prom_unit_kind kind, uint64_t key, size_t bytes,
                    const void *packed, size_t packed_bytes)

@@ -16,11 +16,13 @@ typedef struct prom_store prom_store;
 
 // The kinds of units, in the order of the build.
 typedef enum prom_unit_kind {
-    PROM_UNIT_LEVELS,    // meshes of a shape
-    PROM_UNIT_LEAF,      // representations of a shape's prototype
-    PROM_UNIT_MERGE,     // merged meshes of a cluster
-    PROM_UNIT_CLUSTER,   // representations of a cluster's prototype
-    PROM_UNIT_VIEW_CELL, // what shows from a cell of eyes
+    PROM_UNIT_LEVELS,        // meshes of a shape
+    PROM_UNIT_LEAF_VIEWS,    // pictures of a shape's prototype, if they are to be kept
+    PROM_UNIT_LEAF,          // representations of it
+    PROM_UNIT_MERGE,         // merged meshes of a cluster
+    PROM_UNIT_CLUSTER_VIEWS, // pictures of its prototype, if they are to be kept
+    PROM_UNIT_CLUSTER,       // representations of it
+    PROM_UNIT_VIEW_CELL,     // what shows from a cell of eyes
     PROM_UNIT_COUNT
 } prom_unit_kind;
 
@@ -40,9 +42,11 @@ char *prom_store_path(const char *model_path);
 // Deletes the model's store, if there is one.
 prom_status prom_store_delete(const char *model_path, prom_error *error);
 
-// The next two may be called from several threads.
+// The next three may be called from several threads.
 // False if there is no such unit; else its bytes are in *pack.
 bool prom_store_get(prom_store *store, prom_unit_kind kind, uint64_t key, prom_pack *pack);
+// Notes that the unit, if it is there, is still of use (prom_store_prune).
+void prom_store_touch(prom_store *store, prom_unit_kind kind, uint64_t key);
 prom_status prom_store_put(prom_store *store, prom_unit_kind kind, uint64_t key,
                            const prom_pack *pack, prom_error *error);
 

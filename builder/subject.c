@@ -30,6 +30,7 @@ prom_candidate *prom_subject_add(prom_subject *s, const prom_mesh *mesh,
     assert(s->count < PROM_CANDIDATES_MAX);
     prom_candidate *c = &s->candidates[s->count++];
     prom_views views = c->views;
+    prom_views_clear(&views);
     *c = (prom_candidate){.mesh = mesh, .admission = admission, .views = views, .rep = *rep};
     return c;
 }
@@ -39,17 +40,30 @@ static float radius_of(const prom_subject *s)
     return s->build->prototypes[s->prototype].radius;
 }
 
-void prom_subject_take_truth(prom_subject *s, bool with_ids)
+static bool is_measured_mesh(const prom_candidate *c)
 {
-    if (!s->truth.rgba || (with_ids && !s->truth.ids)) {
-        prom_views_finish(&s->truth);
-        prom_views_init(&s->truth, with_ids);
-    }
-    prom_views wanted = s->truth;
-    if (!with_ids) wanted.ids = NULL;
-    prom_baker_set_subject(s->build->baker, s->items.data, s->items.count);
-    prom_baker_take_views(s->build->baker, radius_of(s), &wanted);
-    s->loop.count = PROM_DIRS;
+    return c->admission == PROM_ADMIT_MEASURED && c->rep.kind == PROM_REP_MESH;
+}
+
+void prom_subject_take_truth(prom_subject *s)
+{
+    prom_baker *baker = s->build->baker;
+    bool large = false;
+    for (uint32_t i = 0; i < s->count; i++) large |= is_measured_mesh(&s->candidates[i]);
+    prom_baker_set_subject(baker, s->items.data, s->items.count);
+    prom_baker_draw_views(baker, radius_of(s));
+    if (s->child_count) prom_baker_read_shares(baker, s->child_count, s->shares);
+    if (large && s->large_items.count)
+        prom_baker_set_subject(baker, s->large_items.data, s->large_items.count);
+    if (large) prom_baker_draw_large_views(baker, radius_of(s));
+    prom_baker_read_views(baker, &s->truth);
+    for (uint32_t d = 0; d < PROM_DIRS; d++) s->coverage[d] = prom_views_coverage(&s->truth, d);
+}
+
+static void add_comparison(prom_subject *s, prom_candidate *c)
+{
+    c->result.views = &c->views;
+    s->comparisons[s->comparison_count++] = &c->result;
 }
 
 prom_status prom_subject_take_views(prom_subject *s, uint32_t i, uint32_t device_id,
@@ -67,31 +81,33 @@ prom_status prom_subject_take_views(prom_subject *s, uint32_t i, uint32_t device
         item.texture = prom_renderer_add_texture(b->renderer, &s->picture);
         if (item.texture == PROM_NONE) return prom_build_device_full("textures", error);
     }
-    if (!c->views.rgba) prom_views_init(&c->views, false);
     prom_baker_set_subject(b->baker, &item, 1);
-    prom_baker_take_views(b->baker, radius_of(s), &c->views);
-    c->result.views = &c->views;
-    s->comparisons[s->comparison_count++] = &c->result;
+    prom_baker_take_views(b->baker, radius_of(s), is_measured_mesh(c), &c->views);
+    add_comparison(s, c);
     prom_renderer_truncate(b->renderer, meshes, textures);
     return PROM_OK;
 }
 
 // ---- measuring
 
-static void measure_direction(void *user, size_t dir, unsigned thread)
+static void measure_step(void *user, size_t step, unsigned thread)
 {
     prom_subject *s = user;
-    prom_measure_direction(s->build->measure, thread, (uint32_t)dir, &s->truth,
-                           &s->coverage[dir], s->comparisons, s->comparison_count);
-    if (s->child_count)
-        prom_measure_shares(&s->truth, (uint32_t)dir, s->child_count, s->shares);
+    prom_measure_step(s->build->measure, thread, &s->measuring, step);
 }
 
 static void start_measuring(prom_subject *s)
 {
-    s->loop.body = measure_direction;
-    s->loop.user = s;
+    prom_measuring_init(&s->measuring, &s->truth, s->comparisons, s->comparison_count);
+    s->loop = (prom_loop){.body = measure_step, .user = s};
+    if (s->comparison_count) s->loop.count = PROM_MEASURE_STEPS;
     prom_pool_start(s->build->pool, &s->loop);
+}
+
+static void wait_for_measures(prom_subject *s)
+{
+    prom_pool_wait(s->build->pool, &s->loop);
+    prom_measure_end(&s->measuring);
 }
 
 // ---- settling: what the measurements make of the candidates
@@ -118,17 +134,25 @@ static uint32_t main_shading(const prom_build_state *b, const prom_mesh *mesh)
     return most;
 }
 
-// The near-field function through the rows of a mesh.
-static float fit_near(const prom_comparison *result, float error, float radius)
+// The near-field function through the rows of a mesh. What is measured along the axes alone
+// counts by what it is of the accuracy there at the largest of the other sizes.
+static float fit_near(const prom_accuracy_row *row, float error, float radius)
 {
-    float e_px[PROM_SIZES], mean[PROM_SIZES];
-    for (uint32_t s = 0; s < PROM_SIZES; s++) {
-        uint32_t sum = 0;
-        for (uint32_t d = 0; d < PROM_DIRS; d++) sum += result->accuracy.bins[d][s];
-        e_px[s] = error * prom_size_of_bin(s) / (2.0f * radius);
-        mean[s] = (float)sum / (255.0f * PROM_DIRS);
+    enum { SIZES = PROM_SIZES + PROM_SIZES_LARGE };
+    float e_px[SIZES], mean[SIZES], sum[SIZES] = {0}, axes = 0.0f;
+    for (uint32_t d = 0; d < PROM_DIRS; d++)
+        for (uint32_t s = 0; s < PROM_SIZES; s++) sum[s] += row->bins[d][s];
+    for (uint32_t d = 0; d < PROM_DIRS_LARGE; d++) {
+        axes += row->bins[d][PROM_SIZES - 1];
+        for (uint32_t s = PROM_SIZES; s < SIZES; s++) sum[s] += row->large[d][s - PROM_SIZES];
     }
-    return prom_accuracy_fit_near(e_px, mean, PROM_SIZES);
+    for (uint32_t s = 0; s < SIZES; s++) {
+        e_px[s] = error * prom_size_of_bin(s) / (2.0f * radius);
+        mean[s] = sum[s] / (255.0f * PROM_DIRS);
+        if (s >= PROM_SIZES)
+            mean[s] = axes > 0.0f ? mean[PROM_SIZES - 1] * fminf(sum[s] / axes, 1.0f) : NAN;
+    }
+    return prom_accuracy_fit_near(e_px, mean, SIZES);
 }
 
 // Area that the triangles of a mesh fill, seen from afar: mean over all directions. A triangle
@@ -179,11 +203,8 @@ static void settle(prom_subject *s, prom_candidate *c)
     uint32_t gaps = 0;
     for (uint32_t d = 0; d < PROM_DIRS; d++)
         if (c->result.gaps[d] > gaps) gaps = c->result.gaps[d];
-    if (mesh)
-        for (uint32_t d = 0; d < PROM_DIRS_LARGE; d++)
-            memset(c->result.accuracy.large[d], c->result.accuracy.bins[d][PROM_SIZES - 1],
-                   PROM_SIZES_LARGE);
-    if (mesh && rep->error > 0) rep->near_k = fit_near(&c->result, rep->error, radius_of(s));
+    if (mesh && rep->error > 0)
+        rep->near_k = fit_near(&c->result.accuracy, rep->error, radius_of(s));
     if (mesh && gaps > 0) rep->max_size_px = PROM_GAP_PX * sqrtf(GAPS_SHOWN_PX / (float)gaps);
     c->kept = rep->max_size_px >= LEAST_SIZE_PX;
 }
@@ -191,15 +212,14 @@ static void settle(prom_subject *s, prom_candidate *c)
 static prom_status measure_and_settle(prom_subject *s, const prom_subject_class *class,
                                       uint32_t index, prom_error *error)
 {
-    prom_build_state *b = s->build;
-    prom_pool_wait(b->pool, &s->loop);
+    wait_for_measures(s);
     for (uint32_t i = 0; i < s->count; i++) settle(s, &s->candidates[i]);
     uint32_t settled = s->count;
     s->comparison_count = 0;
     prom_status status = class->amend ? class->amend(s, index, error) : PROM_OK;
     if (status || !s->comparison_count) return status;
     start_measuring(s);
-    prom_pool_wait(b->pool, &s->loop);
+    wait_for_measures(s);
     for (uint32_t i = settled; i < s->count; i++) settle(s, &s->candidates[i]);
     return PROM_OK;
 }
@@ -255,10 +275,11 @@ static void clear(prom_subject *s)
     prom_free(s->shares);
     s->shares = NULL;
     s->count = s->comparison_count = s->child_count = 0;
-    s->items.count = 0;
+    s->items.count = s->large_items.count = 0;
+    prom_views_clear(&s->truth);
     s->first_box = PROM_CANDIDATES_MAX;
     s->loop = (prom_loop){0};
-    s->known = false;
+    s->known = s->views_known = false;
     memset(s->coverage, 0, sizeof s->coverage);
 }
 
@@ -266,8 +287,17 @@ static void finish_slot(prom_subject *s)
 {
     clear(s);
     prom_array_finish(&s->items);
+    prom_array_finish(&s->large_items);
     prom_views_finish(&s->truth);
     for (int i = 0; i < PROM_CANDIDATES_MAX; i++) prom_views_finish(&s->candidates[i].views);
+}
+
+static void take_known_views(prom_subject *s)
+{
+    for (uint32_t i = 0; i < s->count; i++)
+        if (s->candidates[i].admission == PROM_ADMIT_MEASURED)
+            add_comparison(s, &s->candidates[i]);
+    s->build->views_taken++;
 }
 
 static prom_status begin(prom_subject *s, const prom_subject_class *class, uint32_t index,
@@ -276,13 +306,38 @@ static prom_status begin(prom_subject *s, const prom_subject_class *class, uint3
     clear(s);
     prom_status status = class->begin(s, index, error);
     if (status) return status;
+    prom_store *store = s->build->store;
     prom_pack pack = {0};
-    s->known = prom_store_get(s->build->store, class->kind, s->key, &pack) &&
-               prom_subject_unpack(s, &pack);
+    s->known =
+        prom_store_get(store, class->kind, s->key, &pack) && prom_subject_unpack(s, &pack);
+    if (s->known) {
+        if (s->build->options->keep_views)
+            prom_store_touch(store, class->views_kind, s->views_key);
+    } else {
+        s->views_known = prom_store_get(store, class->views_kind, s->views_key, &pack) &&
+                         prom_subject_unpack_views(s, &pack);
+        if (s->views_known)
+            take_known_views(s);
+        else
+            status = class->draw(s, index, error);
+        if (!status) start_measuring(s);
+    }
     prom_array_finish(&pack);
-    if (s->known) return PROM_OK;
-    status = class->draw(s, index, error);
-    if (!status) start_measuring(s);
+    return status;
+}
+
+static prom_status keep(prom_subject *s, const prom_subject_class *class, prom_error *error)
+{
+    prom_store *store = s->build->store;
+    prom_pack pack = {0};
+    prom_subject_pack(s, &pack);
+    prom_status status = prom_store_put(store, class->kind, s->key, &pack, error);
+    if (!status && s->build->options->keep_views && !s->views_known && s->truth.count) {
+        pack.count = 0;
+        prom_subject_pack_views(s, &pack);
+        status = prom_store_put(store, class->views_kind, s->views_key, &pack, error);
+    }
+    prom_array_finish(&pack);
     return status;
 }
 
@@ -294,11 +349,7 @@ static prom_status end(prom_subject *s, const prom_subject_class *class, uint32_
         prom_progress_reused(progress, 1);
     } else {
         status = measure_and_settle(s, class, index, error);
-        if (status) return status;
-        prom_pack pack = {0};
-        prom_subject_pack(s, &pack);
-        status = prom_store_put(s->build->store, class->kind, s->key, &pack, error);
-        prom_array_finish(&pack);
+        if (!status) status = keep(s, class, error);
     }
     if (!status) status = write_subject(s, error);
     if (!status && class->settled) class->settled(s, index);
@@ -307,10 +358,13 @@ static prom_status end(prom_subject *s, const prom_subject_class *class, uint32_
 }
 
 // One subject under way for each core and one more to draw, as memory allows. The views take
-// most of it: about twelve of a subject.
+// most of it: about eight of a subject with the large ones, of which what is covered, less than
+// a half, is kept.
 static uint32_t slot_count(const prom_build_state *b)
 {
-    const uint64_t bytes = 12 * PROM_ATLAS_PIXELS * 4;
+    const uint64_t view_pixels =
+        PROM_DIRS * PROM_VIEW_PIXELS + PROM_DIRS_LARGE * PROM_VIEW_LARGE_PIXELS;
+    const uint64_t bytes = 8 * view_pixels / 2 * sizeof(prom_rgba);
     uint64_t fit = prom_build_spare_memory(b, bytes) / bytes;
     uint32_t wanted = prom_thread_count() + 1;
     return fit < wanted ? (uint32_t)fit : wanted;

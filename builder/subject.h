@@ -23,7 +23,7 @@ typedef enum prom_admission {
 typedef struct prom_candidate {
     const prom_mesh *mesh; // in the frame of the prototype
     prom_admission admission;
-    prom_views views; // kept from subject to subject
+    prom_views views; // their memory is kept from subject to subject
     prom_comparison result;
     // What it becomes; kind, flags, level, error and switch_distance are set at the start.
     prom_representation rep;
@@ -33,11 +33,14 @@ typedef struct prom_candidate {
 typedef struct prom_subject {
     prom_build_state *build;
     uint32_t prototype;
-    uint64_t key;
-    bool known; // settled by an earlier build
+    uint64_t views_key; // of what is drawn,
+    uint64_t key;       // and of what comes of it
+    bool known;         // settled by an earlier build
+    bool views_known;   // drawn by one
     prom_candidate candidates[PROM_CANDIDATES_MAX];
     uint32_t count, first_box;        // boxes, if there are any, stand from first_box on
     PROM_ARRAY(prom_draw_item) items; // what shows the truth, relative to the bounds' centre
+    PROM_ARRAY(prom_draw_item) large_items; // and in the large views; none: the same
     prom_views truth;
     uint32_t child_count; // of a cluster
     uint16_t (*shares)[PROM_DIRS];
@@ -45,6 +48,7 @@ typedef struct prom_subject {
     prom_mesh box_meshes[PROM_BOXES];
     prom_texture picture; // of the textured box
     prom_loop loop;
+    prom_measuring measuring;
     prom_comparison *comparisons[PROM_CANDIDATES_MAX];
     uint32_t comparison_count;
 } prom_subject;
@@ -52,8 +56,9 @@ typedef struct prom_subject {
 // Adds a candidate; `rep` has kind, flags, level, error, switch_distance, texture PROM_NONE.
 prom_candidate *prom_subject_add(prom_subject *s, const prom_mesh *mesh,
                                  const prom_representation *rep, prom_admission admission);
-// Takes the truth's views: of the subject's items.
-void prom_subject_take_truth(prom_subject *s, bool with_ids);
+// Takes the truth's views, coverage and shares: of the subject's items. Large views if a mesh
+// is to be measured, which must have been added.
+void prom_subject_take_truth(prom_subject *s);
 // Uploads candidate i for its views, and forgets it again; device_id other than PROM_NONE: it
 // is there already.
 prom_status prom_subject_take_views(prom_subject *s, uint32_t i, uint32_t device_id,
@@ -66,11 +71,11 @@ prom_draw_item prom_item_around(uint32_t device_mesh, const float center[3]);
 
 // What a kind of subjects does. Both get the number of the subject in the run.
 typedef struct prom_subject_class {
-    prom_unit_kind kind;
-    // Sets prototype, key and items, and adds the mesh candidates. Meshes that later subjects
-    // need are uploaded.
+    prom_unit_kind kind, views_kind;
+    // Sets prototype, views_key, key and items, and adds the mesh candidates. Meshes that later
+    // subjects need are uploaded.
     prom_status (*begin)(prom_subject *s, uint32_t index, prom_error *error);
-    // Takes truth and views; not called when an earlier build knows the results.
+    // Takes truth and views; not called when an earlier build knows them, or the results.
     prom_status (*draw)(prom_subject *s, uint32_t index, prom_error *error);
     // Adds what turned out to be needed, with views, once all else is measured. NULL: nothing.
     prom_status (*amend)(prom_subject *s, uint32_t index, prom_error *error);
@@ -88,5 +93,8 @@ prom_status prom_subjects_run(prom_build_state *b, const prom_subject_class *cla
 void prom_subject_pack(const prom_subject *s, prom_pack *pack);
 // Fills in the results; the mesh candidates have been added. False if the bytes are not such.
 bool prom_subject_unpack(prom_subject *s, const prom_pack *pack);
+// The same for what was drawn: boxes, coverage, shares and all views.
+void prom_subject_pack_views(const prom_subject *s, prom_pack *pack);
+bool prom_subject_unpack_views(prom_subject *s, const prom_pack *pack);
 
 #endif

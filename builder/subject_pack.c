@@ -43,32 +43,83 @@ static void unpack_candidate(prom_candidate *c, prom_unpack *in)
     if (!in->failed && !sound(&c->rep)) in->failed = true;
 }
 
-bool prom_subject_unpack(prom_subject *s, const prom_pack *pack)
+// Takes the results from the beginning of what is left.
+static void unpack_results(prom_subject *s, prom_unpack *in)
 {
-    prom_unpack in = {.at = pack->data, .left = pack->count};
-    uint32_t meshes = prom_unpack_u32(&in, PROM_LEVELS_MAX);
-    uint32_t boxes = prom_unpack_u32(&in, PROM_BOXES);
-    uint32_t children = prom_unpack_u32(&in, UINT32_MAX);
+    uint32_t meshes = prom_unpack_u32(in, PROM_LEVELS_MAX);
+    uint32_t boxes = prom_unpack_u32(in, PROM_BOXES);
+    uint32_t children = prom_unpack_u32(in, UINT32_MAX);
     const uint32_t added = s->count;
-    if (meshes != added || children != s->child_count) in.failed = true;
-    prom_unpack_bytes(&in, s->coverage, sizeof s->coverage);
-    if (!in.failed && children) prom_unpack_bytes(&in, s->shares, children * sizeof *s->shares);
+    if (meshes != added || children != s->child_count) in->failed = true;
+    prom_unpack_bytes(in, s->coverage, sizeof s->coverage);
+    if (!in->failed && children) prom_unpack_bytes(in, s->shares, children * sizeof *s->shares);
     if (boxes) s->first_box = added;
-    for (uint32_t i = 0; i < meshes + boxes && !in.failed; i++) {
+    for (uint32_t i = 0; i < meshes + boxes && !in->failed; i++) {
         prom_representation none = {0};
         if (i >= meshes)
             prom_subject_add(s, &s->box_meshes[i - meshes], &none, PROM_ADMIT_MEASURED);
-        unpack_candidate(&s->candidates[i], &in);
-        if (i >= meshes) prom_unpack_mesh(&in, 0, &s->box_meshes[i - meshes]);
-        if (s->candidates[i].pictured && !in.failed) {
-            if (i < meshes || s->picture.pixels) in.failed = true;
-            if (!in.failed) prom_unpack_texture(&in, &s->picture);
+        unpack_candidate(&s->candidates[i], in);
+        if (i >= meshes) prom_unpack_mesh(in, 0, &s->box_meshes[i - meshes]);
+        if (s->candidates[i].pictured && !in->failed) {
+            if (i < meshes || s->picture.pixels) in->failed = true;
+            if (!in->failed) prom_unpack_texture(in, &s->picture);
         }
     }
-    if (prom_unpack_end(&in)) return true;
+}
+
+// As if there had been nothing but the `added` mesh candidates.
+static void forget(prom_subject *s, uint32_t added)
+{
     for (int i = 0; i < PROM_BOXES; i++) prom_mesh_finish(&s->box_meshes[i]);
     prom_texture_finish(&s->picture);
-    s->count = added; // as if there had been nothing
+    prom_views_clear(&s->truth);
+    s->count = added;
     s->first_box = PROM_CANDIDATES_MAX;
+}
+
+bool prom_subject_unpack(prom_subject *s, const prom_pack *pack)
+{
+    prom_unpack in = {.at = pack->data, .left = pack->count};
+    const uint32_t added = s->count;
+    unpack_results(s, &in);
+    if (prom_unpack_end(&in)) return true;
+    forget(s, added);
+    return false;
+}
+
+// ---- views: after the results, of which boxes, coverage and shares hold for other results too
+
+void prom_subject_pack_views(const prom_subject *s, prom_pack *pack)
+{
+    prom_subject_pack(s, pack);
+    prom_views_pack(&s->truth, pack);
+    for (uint32_t i = 0; i < s->count; i++)
+        if (s->candidates[i].admission == PROM_ADMIT_MEASURED)
+            prom_views_pack(&s->candidates[i].views, pack);
+}
+
+static void unpack_views(prom_subject *s, prom_unpack *in)
+{
+    prom_views_unpack(in, &s->truth);
+    if (s->truth.count < PROM_DIRS) in->failed = true;
+    for (uint32_t i = 0; i < s->count && !in->failed; i++) {
+        const prom_candidate *c = &s->candidates[i];
+        if (c->admission != PROM_ADMIT_MEASURED) continue;
+        prom_views_unpack(in, &s->candidates[i].views);
+        bool large = c->rep.kind == PROM_REP_MESH;
+        if (c->views.count != (large ? PROM_VIEWS : PROM_DIRS) ||
+            c->views.count > s->truth.count)
+            in->failed = true;
+    }
+}
+
+bool prom_subject_unpack_views(prom_subject *s, const prom_pack *pack)
+{
+    prom_unpack in = {.at = pack->data, .left = pack->count};
+    const uint32_t added = s->count;
+    unpack_results(s, &in);
+    if (!in.failed) unpack_views(s, &in);
+    if (prom_unpack_end(&in)) return true;
+    forget(s, added);
     return false;
 }

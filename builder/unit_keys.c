@@ -111,19 +111,23 @@ uint64_t prom_key_of_levels(const prom_build_state *b, uint32_t shape)
     return h;
 }
 
-// What every measurement depends on.
-static uint64_t measured(const prom_build_state *b, uint32_t prototype)
+// What every picture depends on.
+static uint64_t drawn(const prom_build_state *b, uint32_t prototype)
 {
     uint32_t boxed = b->boxed[prototype];
-    const uint64_t how = prom_measure_key(b->measure);
-    uint64_t h = prom_hash(&how, sizeof how, b->device_key);
-    return prom_hash(&boxed, sizeof boxed, h);
+    return prom_hash(&boxed, sizeof boxed, b->device_key);
 }
 
-uint64_t prom_key_of_leaf(const prom_build_state *b, uint32_t shape)
+uint64_t prom_key_of_leaf_views(const prom_build_state *b, uint32_t shape)
 {
     const uint64_t levels = b->shapes[shape].levels_key;
-    return prom_hash(&levels, sizeof levels, measured(b, shape));
+    return prom_hash(&levels, sizeof levels, drawn(b, shape));
+}
+
+uint64_t prom_key_of_measured(const prom_build_state *b, uint64_t views_key)
+{
+    const uint64_t how = prom_measure_key(b->measure);
+    return prom_hash(&how, sizeof how, views_key);
 }
 
 void prom_key_add_placed(uint64_t *key, uint64_t part, const double origin[3],
@@ -145,12 +149,12 @@ uint64_t prom_key_of_merge(const prom_build_state *b, uint32_t cluster)
     return hash_cluster(&b->tree.clusters.data[cluster], b->program_key);
 }
 
-uint64_t prom_key_of_cluster(const prom_build_state *b, uint32_t cluster)
+uint64_t prom_key_of_cluster_views(const prom_build_state *b, uint32_t cluster)
 {
     uint32_t p = (uint32_t)b->objects.shapes.count + cluster;
     const prom_prototype *proto = &b->prototypes[p];
     const uint64_t merge = b->clusters[cluster].merge_key;
-    uint64_t h = hash_cluster(&b->tree.clusters.data[cluster], measured(b, p));
+    uint64_t h = hash_cluster(&b->tree.clusters.data[cluster], drawn(b, p));
     h = prom_hash(proto->center, sizeof proto->center, h);
     h = prom_hash(proto->half, sizeof proto->half, h);
     h = prom_hash(&proto->radius, sizeof proto->radius, h);

@@ -1,11 +1,10 @@
 // LINK: prom_builder prom_render prom_traverse prom_benefit prom_metaobj
 #include "builder/pipeline.h"
 
-#include "builder/bake.h"
-#include "builder/measure.h"
 #include "metaobj/base/log.h"
 #include "metaobj/container.h"
 #include "obj_street.h"
+#include "render/context.h"
 #include "traverse/selector.h"
 
 #include <setjmp.h>
@@ -178,68 +177,10 @@ static void bad_input_leaves_nothing(void **state)
     }
 }
 
-// Synthetic views: a disc in every direction.
-static void draw_disc(prom_views *views, float radius_px, uint8_t grey)
-{
-    for (uint32_t d = 0; d < PROM_DIRS; d++)
-        for (uint32_t y = 0; y < PROM_VIEW_PX; y++)
-            for (uint32_t x = 0; x < PROM_VIEW_PX; x++) {
-                float dx = (float)x - 63.5f, dy = (float)y - 63.5f;
-                size_t i = prom_view_start(d) + (size_t)y * PROM_ATLAS_WIDTH + x;
-                bool in = dx * dx + dy * dy < radius_px * radius_px;
-                uint8_t pixel[4] = {grey, grey, grey, 255};
-                memset(views->rgba[i], 0, 4);
-                if (in) memcpy(views->rgba[i], pixel, 4);
-                if (views->ids) views->ids[i] = in ? (x < 64 ? 0 : 1) : PROM_NONE;
-            }
-}
-
-static void accuracy_is_one_for_equal_and_falls_with_difference(void **state)
-{
-    (void)state;
-    prom_views truth, views[3];
-    static prom_comparison result[3];
-    prom_comparison *others[3];
-    static const struct {
-        float radius_px;
-        uint8_t grey;
-    } discs[3] = {{40, 188}, {38, 178}, {20, 90}};
-    prom_views_init(&truth, true);
-    draw_disc(&truth, 40, 188);
-    for (int i = 0; i < 3; i++) {
-        prom_views_init(&views[i], false);
-        draw_disc(&views[i], discs[i].radius_px, discs[i].grey);
-        result[i].views = &views[i];
-        others[i] = &result[i];
-    }
-    const prom_measure_options options = {0};
-    prom_measure *m = prom_measure_create(&options, 0.2f);
-    uint16_t coverage[PROM_DIRS], shares[2][PROM_DIRS];
-    for (uint32_t d = 0; d < PROM_DIRS; d++) {
-        prom_measure_direction(m, 0, d, &truth, &coverage[d], others, 3);
-        prom_measure_shares(&truth, d, 2, shares);
-        double share = 40.0 * 40.0 / (64.0 * 64.0);
-        assert_true(fabs(coverage[d] / 65535.0 - share) < 0.01);
-        for (uint32_t s = 0; s < PROM_SIZES; s++) {
-            assert_int_equal(result[0].accuracy.bins[d][s], 255);
-            assert_true(result[1].accuracy.bins[d][s] < 255);
-            assert_true(result[2].accuracy.bins[d][s] < result[1].accuracy.bins[d][s]);
-        }
-        assert_int_equal(result[0].gaps[d], 0);
-        assert_true(result[2].gaps[d] > 100);
-        assert_in_range(shares[0][d] + shares[1][d], 65534, 65536);
-        assert_in_range(shares[0][d], 32700, 32835);
-    }
-    prom_measure_destroy(m);
-    prom_views_finish(&truth);
-    for (int i = 0; i < 3; i++) prom_views_finish(&views[i]);
-}
-
 int main(void)
 {
     prom_log_set_level(PROM_LOG_WARNING);
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(accuracy_is_one_for_equal_and_falls_with_difference),
         cmocka_unit_test(same_input_gives_same_content),
         cmocka_unit_test(only_what_depends_on_a_change_is_done_again),
         cmocka_unit_test(tables_of_a_built_model_hold),

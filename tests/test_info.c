@@ -275,6 +275,11 @@ static void sheets_grow_by_rows_and_columns(void **state)
     assert_in_range(all[0].height - all[3].height, VIEW, 2 * VIEW);
     // Small pictures are enlarged, by whole numbers: 20 px is 23 (16 * 2^0.5) six times.
     assert_int_equal(all[4].width - all[0].width, 5 * 2 * (6 * 23 - VIEW));
+    // Large ones are not, and there are those along the axes: 250 px is 256.
+    picture large;
+    assert_true(take_sheet("leaf", "--size-px 250", &large));
+    assert_int_equal(large.width - all[1].width, 6 * 2 * (256 - VIEW));
+    prom_free(large.rgba);
     for (int i = 0; i < 5; i++) prom_free(all[i].rgba);
     fixture_finish(&f);
 }

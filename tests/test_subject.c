@@ -36,12 +36,13 @@ static prom_status begin(prom_subject *s, uint32_t index, prom_error *error)
     return PROM_OK;
 }
 
-// What prom_subject_take_truth does, less the device: nothing is seen.
+// Less the device: nothing is seen.
 static prom_status draw(prom_subject *s, uint32_t index, prom_error *error)
 {
-    if (!s->truth.rgba) prom_views_init(&s->truth, false);
-    memset(s->truth.rgba, 0, PROM_ATLAS_PIXELS * sizeof *s->truth.rgba);
-    s->loop.count = PROM_DIRS;
+    prom_rgba *nothing = prom_calloc(PROM_VIEW_PIXELS, sizeof *nothing);
+    for (uint32_t d = 0; d < PROM_DIRS; d++)
+        prom_views_add(&s->truth, (const prom_rgba *)nothing, PROM_VIEW_PX);
+    prom_free(nothing);
     run.drawn++;
     if (index == run.stops_at_draw) prom_stop_request();
     return index == run.fails_at_draw ? prom_fail(error, PROM_ERR_UNSUPPORTED, "draw")
@@ -100,7 +101,8 @@ static int finish(void **state)
 
 static prom_status run_subjects(prom_error *error)
 {
-    static const prom_subject_class class = {PROM_UNIT_LEAF, begin, draw, amend, settled};
+    static const prom_subject_class class = {
+        PROM_UNIT_LEAF, PROM_UNIT_LEAF_VIEWS, begin, draw, amend, settled};
     prom_progress progress;
     prom_progress_begin(&progress, "subjects", SUBJECTS);
     return prom_subjects_run(&run.build, &class, NULL, SUBJECTS, &progress, error);

@@ -1,0 +1,204 @@
+#include "builder/measure_private.h"
+
+#include "metaobj/base/math.h"
+
+#include <string.h>
+
+#define BACKGROUNDS 2
+#define SIZES (PROM_SIZES + PROM_SIZES_LARGE)
+
+// In smaller pictures there are too few pixels for a veto.
+#define VETO_SIZE_PX 32.0f
+
+// What a thread works in.
+struct measure_scratch {
+    prom_metric *metric;
+    float (*patches)[4];     // the truth's, of all sizes
+    float (*whole)[4];       // a representation's at full size,
+    float (*small)[4];       // and at another
+    float (*between)[4];     // while it is reduced
+    prom_rgba *rgba;         // over a background
+    float *truth;            // features of the truth, of all sizes and backgrounds,
+    float *other;            // and of a representation
+    float *map;              // of errors
+    prom_patch sizes[SIZES]; // in patches
+    size_t features[SIZES];  // in truth, of the first background
+};
+
+// ---- memory
+
+static size_t size_pixels(uint32_t size)
+{
+    size_t side = (size_t)ceilf(prom_size_of_bin(size));
+    return side * side;
+}
+
+static size_t window_floats(const prom_measure *m, const prom_metric *metric, uint32_t size)
+{
+    uint32_t side = (uint32_t)ceilf(prom_size_of_bin(size)) + 2 * m->pad;
+    return prom_metric_feature_floats(metric, side, side);
+}
+
+// Sizes of the memory for a whole view and all that is made of it.
+typedef struct room {
+    size_t view, patches, truth, other;
+} room;
+
+static room room_for(const prom_measure *m, const prom_metric *metric, uint32_t view)
+{
+    const size_range sizes = sizes_of_view(view);
+    room r = {0};
+    for (uint32_t size = sizes.first; size < sizes.first + sizes.count; size++) {
+        r.view = size_pixels(size);
+        r.patches += r.view;
+        r.other = window_floats(m, metric, size);
+        r.truth += BACKGROUNDS * r.other;
+    }
+    return r;
+}
+
+// What is not used of it takes no memory: the pages of large blocks come when touched.
+measure_scratch *measure_scratch_create(const prom_measure *m)
+{
+    measure_scratch *s = prom_calloc(1, sizeof *s);
+    const uint32_t side = PROM_VIEW_LARGE_PX + 2 * m->pad;
+    const size_t window = (size_t)side * side;
+    s->metric = prom_metric_create(m->how.metric, m->how.ppd, side, window, 1);
+    const room r = room_for(m, s->metric, PROM_DIRS), small = room_for(m, s->metric, 0);
+    s->patches = prom_alloc(r.patches, sizeof *s->patches);
+    s->whole = prom_alloc(r.view, sizeof *s->whole);
+    s->small = prom_alloc(r.view, sizeof *s->small);
+    s->between = prom_alloc(r.view, sizeof *s->between);
+    s->rgba = prom_alloc(window, sizeof *s->rgba);
+    // With a wide metric the windows of many small pictures are larger than those of two.
+    s->truth = prom_alloc(r.truth > small.truth ? r.truth : small.truth, sizeof *s->truth);
+    s->other = prom_alloc(r.other, sizeof *s->other);
+    s->map = prom_alloc(window, sizeof *s->map);
+    return s;
+}
+
+void measure_scratch_destroy(measure_scratch *s)
+{
+    prom_metric_destroy(s->metric);
+    prom_free(s->patches);
+    prom_free(s->whole);
+    prom_free(s->small);
+    prom_free(s->between);
+    prom_free(s->rgba);
+    prom_free(s->truth);
+    prom_free(s->other);
+    prom_free(s->map);
+    prom_free(s);
+}
+
+// ---- errors
+
+// The features of the patch over a background.
+static void take_features(const prom_measure *m, const prom_patch *patch, float background,
+                          measure_scratch *s, float *features)
+{
+    prom_picture picture = {.width = patch->part.width + 2 * m->pad,
+                            .height = patch->part.height + 2 * m->pad,
+                            .channels = 4,
+                            .pixels = s->rgba};
+    prom_patch_compose(patch, &m->encoder, background, m->pad, s->rgba);
+    prom_metric_features(s->metric, &picture, features);
+}
+
+// A patch of what is seen at a size, in whole or reduced from it.
+static const prom_patch *at_size(const prom_patch *whole, uint32_t view, uint32_t size,
+                                 measure_scratch *s, prom_patch *reduced)
+{
+    const float step = (float)prom_view_px(view) / prom_size_of_bin(size);
+    if (step <= 1.0f) return whole;
+    prom_patch_reduce(whole, step, s->between, reduced);
+    return reduced;
+}
+
+void measure_take_truth(const prom_measure *m, measure_scratch *s, const prom_views *views,
+                        uint32_t view, prom_part part)
+{
+    const size_range sizes = sizes_of_view(view);
+    const uint32_t largest = sizes.first + sizes.count - 1;
+    float(*pixels)[4] = s->patches, *features = s->truth;
+    s->sizes[largest].pixels = pixels;
+    prom_patch_take(views, view, part, &s->sizes[largest]);
+    for (uint32_t i = 0; i < sizes.count; i++) {
+        const uint32_t size = largest - i;
+        s->sizes[size].pixels = pixels;
+        const prom_patch *patch = at_size(&s->sizes[largest], view, size, s, &s->sizes[size]);
+        pixels += prom_part_pixels(&patch->part);
+        s->features[size] = (size_t)(features - s->truth);
+        for (int b = 0; b < BACKGROUNDS; b++) {
+            take_features(m, patch, m->how.background[b], s, features);
+            features += prom_metric_feature_floats(s->metric, patch->part.width + 2 * m->pad,
+                                                   patch->part.height + 2 * m->pad);
+        }
+    }
+}
+
+static float larger_coverage(const prom_patch *a, const prom_patch *b, size_t i)
+{
+    return fmaxf(a->pixels[i][3], b->pixels[i][3]);
+}
+
+// The sum of the errors over the window, or of their squares.
+static double sum_errors(const prom_measure *m, const float *map, size_t count)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < count; i++) sum += m->metric->squares ? map[i] * map[i] : map[i];
+    return sum;
+}
+
+// Whether more of the footprint's pixels are too wrong than may be.
+static bool is_vetoed(const prom_measure *m, const prom_patch *a, const prom_patch *b,
+                      const float *map)
+{
+    const uint32_t width = a->part.width;
+    size_t footprint = 0, wrong = 0;
+    for (uint32_t y = 0; y < a->part.height; y++) {
+        const float *row = map + (size_t)(y + m->pad) * (width + 2 * m->pad) + m->pad;
+        for (uint32_t x = 0; x < width; x++) {
+            if (larger_coverage(a, b, (size_t)y * width + x) < 0.5f) continue;
+            footprint++;
+            wrong += row[x] > m->how.veto_error;
+        }
+    }
+    return (double)wrong > (1.0 - (double)m->how.veto_percentile) * (double)footprint;
+}
+
+// Accuracy of a patch against the truth's of that size.
+static uint8_t compare_size(const prom_measure *m, uint32_t size, const prom_patch *patch,
+                            measure_scratch *s)
+{
+    const prom_patch *truth = &s->sizes[size];
+    const uint32_t wide = patch->part.width + 2 * m->pad;
+    const uint32_t high = patch->part.height + 2 * m->pad;
+    const float *features = s->truth + s->features[size];
+    double area = 0.0, error = 0.0;
+    for (size_t i = 0; i < prom_part_pixels(&patch->part); i++)
+        area += larger_coverage(truth, patch, i);
+    if (area < 1.0) area = 1.0; // less than a pixel is judged as if it were one
+    for (int b = 0; b < BACKGROUNDS; b++) {
+        take_features(m, patch, m->how.background[b], s, s->other);
+        prom_metric_compare(s->metric, features, s->other, wide, high, s->map);
+        features += prom_metric_feature_floats(s->metric, wide, high);
+        if (prom_size_of_bin(size) >= VETO_SIZE_PX && is_vetoed(m, truth, patch, s->map))
+            return 0;
+        double mean = sum_errors(m, s->map, (size_t)wide * high) / area;
+        error += (m->metric->squares ? sqrt(mean) : mean) / BACKGROUNDS;
+    }
+    return (uint8_t)(255.0 * (error < 1.0 ? 1.0 - error : 0.0));
+}
+
+void measure_compare(const prom_measure *m, measure_scratch *s, const prom_views *views,
+                     uint32_t view, prom_part part, uint8_t *accuracies)
+{
+    const size_range sizes = sizes_of_view(view);
+    prom_patch whole = {.pixels = s->whole}, small = {.pixels = s->small};
+    prom_patch_take(views, view, part, &whole);
+    for (uint32_t i = 0; i < sizes.count; i++) {
+        const prom_patch *patch = at_size(&whole, view, sizes.first + i, s, &small);
+        accuracies[i] = compare_size(m, sizes.first + i, patch, s);
+    }
+}
