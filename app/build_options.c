@@ -23,6 +23,7 @@ enum {
     KEY_UP_AXIS,
     KEY_UNIT,
     KEY_PROFILE,
+    KEY_WEIGHT,
     KEY_METRIC,
     KEY_PPD,
     KEY_MEMORY,
@@ -68,32 +69,38 @@ static const struct argp_option options[] = {
      "Pixels per degree of the viewer's angle that they are compared for (22.34: 1280 pixels "
      "on a screen 0.7 m wide, 0.7 m away)",
      4},
-    {0, 0, 0, 0, "Visibility:", 5},
+    {0, 0, 0, 0, "Weights:", 5},
+    {"weight", KEY_WEIGHT, "PATTERN=X", 0,
+     "A visible pixel of the objects of these names, and of all below a node of the scene that "
+     "is named so, is worth X instead of 1, 'statue*=4' for one; may be given more than once, "
+     "the last that matches a name counts",
+     5},
+    {0, 0, 0, 0, "Visibility:", 6},
     {"view-cells", KEY_VIEW_CELLS, "WHERE", 0,
      "Find out what can be seen from where the viewer may be: along camera paths "
      "(FILE[,FILE...]), the automatic walk (auto), or over the floors in a box "
      "(X0,Y0,Z0:X1,Y1,Z1)",
-     5},
+     6},
     {"view-cell-size", KEY_VIEW_CELL_SIZE, "M", 0,
      "Side of the cells that this is kept for (2, or more where that would make more than 400)",
-     5},
+     6},
     {"view-cell-px", KEY_VIEW_CELL_PX, "PX", 0,
-     "Side of the six pictures around an eye, for what shows there (512)", 5},
-    {0, 0, 0, 0, "Work:", 6},
-    {"jobs", 'j', "N", 0, "Cores to use (all)", 6},
+     "Side of the six pictures around an eye, for what shows there (512)", 6},
+    {0, 0, 0, 0, "Work:", 7},
+    {"jobs", 'j', "N", 0, "Cores to use (all)", 7},
     {"memory-mb", KEY_MEMORY, "MB", 0,
-     "Memory to stay within: fewer things are under way at a time (any)", 6},
+     "Memory to stay within: fewer things are under way at a time (any)", 7},
     {"from", KEY_FROM, "STAGE", 0,
      "Take nothing from earlier builds from this stage on: levels, leaves, clusters or "
      "view-cells",
-     6},
-    {"force", KEY_FORCE, NULL, 0, "Take nothing from earlier builds", 6},
+     7},
+    {"force", KEY_FORCE, NULL, 0, "Take nothing from earlier builds", 7},
     {"keep-views", KEY_KEEP_VIEWS, NULL, 0,
      "Keep the pictures that are drawn in X.prom.work too: a build with another --metric or "
      "--ppd need not draw them",
-     6},
+     7},
     {"drop-work", KEY_DROP_WORK, NULL, 0,
-     "Delete X.prom.work, which serves later builds, at the end", 6},
+     "Delete X.prom.work, which serves later builds, at the end", 7},
     {0},
 };
 
@@ -324,6 +331,9 @@ static error_t parse(int key, char *text, struct argp_state *state)
         break;
     case KEY_PROFILE:
         o->build.profile = text;
+        break;
+    case KEY_WEIGHT:
+        prom_option_weight(state, text, &o->build.weights);
         break;
     case ARGP_KEY_ARG:
         prom_option_argument(state, text, &o->scene);

@@ -1,7 +1,6 @@
 #include "app/choice_options.h"
 
 #include "app/options.h"
-#include "metaobj/base/log.h"
 
 #include <string.h>
 
@@ -105,14 +104,6 @@ void prom_option_weight(const struct argp_state *state, char *text, prom_weight_
         prom_option_number(state, "--weight", equals + 1, 0, (double)PROM_WEIGHT_MAX);
     *equals = '\0';
     rules->list[rules->count++] = (prom_weight_rule){text, (float)weight, false};
-}
-
-void prom_warn_of_idle_rules(const prom_weight_rules *rules)
-{
-    for (uint32_t i = 0; i < rules->count; i++)
-        if (!rules->list[i].matched)
-            prom_log(PROM_LOG_WARNING, "--weight: no object is named `%s`",
-                     rules->list[i].pattern);
 }
 
 const char *prom_weight_names(unsigned weights, char text[PROM_WEIGHT_NAMES_BYTES])

@@ -22,8 +22,6 @@ extern const struct argp prom_argp_choice;
 
 // Takes PATTERN=WEIGHT; a wrong one is a usage error. `text` is cut in two and kept.
 void prom_option_weight(const struct argp_state *state, char *text, prom_weight_rules *rules);
-// Warns of patterns that have matched no name.
-void prom_warn_of_idle_rules(const prom_weight_rules *rules);
 
 // The weights in use as on the command line: "none", or names with commas between.
 #define PROM_WEIGHT_NAMES_BYTES 32

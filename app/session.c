@@ -27,7 +27,7 @@ static prom_status open_model(prom_session *s, const char *model_path, prom_erro
 static void find_semantics(prom_session *s)
 {
     prom_weights_apply(&s->choice.rules, &s->model);
-    prom_warn_of_idle_rules(&s->choice.rules);
+    prom_weight_rules_warn(&s->choice.rules);
     s->semantics = prom_alloc(s->model.tree_count, sizeof *s->semantics);
     if (prom_weights_gather(&s->model, s->semantics)) return;
     prom_free(s->semantics);

@@ -1,5 +1,7 @@
 #include "benefit/weights.h"
 
+#include "metaobj/base/log.h"
+
 #include <fnmatch.h>
 #include <math.h>
 
@@ -25,6 +27,14 @@ float prom_weight_of_name(prom_weight_rules *rules, const char *name, float othe
         weight = rule->weight;
     }
     return weight;
+}
+
+void prom_weight_rules_warn(const prom_weight_rules *rules)
+{
+    for (uint32_t i = 0; i < rules->count; i++)
+        if (!rules->list[i].matched)
+            prom_log(PROM_LOG_WARNING, "weights: nothing is named `%s`",
+                     rules->list[i].pattern);
 }
 
 void prom_weights_apply(prom_weight_rules *rules, prom_model *model)

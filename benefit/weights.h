@@ -45,6 +45,8 @@ typedef struct prom_weight_rules {
 
 // What the last rule says that a name matches; `otherwise` where none does.
 float prom_weight_of_name(prom_weight_rules *rules, const char *name, float otherwise);
+// Warns of rules that have matched no name.
+void prom_weight_rules_warn(const prom_weight_rules *rules);
 // Sets the weights of the model's nodes that rules match, and of what is below them and is not
 // matched itself.
 void prom_weights_apply(prom_weight_rules *rules, prom_model *model);

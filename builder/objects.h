@@ -34,6 +34,7 @@ typedef struct prom_shape {
 typedef struct prom_object {
     uint32_t shape;
     uint32_t name;  // offset into names
+    uint32_t node;  // of the source, that it goes by: that of most of its faces
     uint32_t group; // index into groups, or PROM_NONE
     prom_placement placement;
 } prom_object;

@@ -132,8 +132,8 @@ static void fill_mesh(const prom_finder *finder, prom_span span, const double ce
     }
 }
 
-// The name of the node that most of the faces come from.
-static uint32_t commonest_name(prom_finder *finder, prom_span span)
+// The node that most of the faces come from.
+static uint32_t commonest_node(prom_finder *finder, prom_span span)
 {
     uint32_t best = PROM_NONE, most = 0;
     for (size_t i = 0; i < span.count; i++) {
@@ -146,15 +146,16 @@ static uint32_t commonest_name(prom_finder *finder, prom_span span)
     }
     for (size_t i = 0; i < span.count; i++)
         finder->node_weight[finder->uses.data[span.faces[i].use].node] = 0;
-    return prom_node_name(finder, best);
+    return best;
 }
 
-static void add_object(prom_finder *finder, uint32_t shape, uint32_t name,
+static void add_object(prom_finder *finder, uint32_t shape, uint32_t node,
                        const prom_placement *placement)
 {
     finder->out->shapes.data[shape].instances++;
     prom_array_push(&finder->out->objects, (prom_object){.shape = shape,
-                                                         .name = name,
+                                                         .name = prom_node_name(finder, node),
+                                                         .node = node,
                                                          .group = PROM_NONE,
                                                          .placement = *placement});
 }
@@ -172,7 +173,7 @@ void prom_make_shape(prom_finder *finder, prom_span span, prom_layer layer, bool
     fill_mesh(finder, span, at.origin, step, &shape.mesh);
     shape.bounds = prom_mesh_bounds(&shape.mesh);
     prom_array_push(&finder->out->shapes, shape);
-    add_object(finder, (uint32_t)finder->out->shapes.count - 1, commonest_name(finder, span),
+    add_object(finder, (uint32_t)finder->out->shapes.count - 1, commonest_node(finder, span),
                &at);
 }
 
@@ -278,5 +279,5 @@ void prom_make_part(prom_finder *finder, const prom_part *part, bool backdrop)
         *shape = (uint32_t)finder->out->shapes.count;
         prom_array_push(&finder->out->shapes, s);
     }
-    add_object(finder, *shape, prom_node_name(finder, part->node), &part->placement);
+    add_object(finder, *shape, part->node, &part->placement);
 }

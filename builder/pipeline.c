@@ -174,6 +174,11 @@ static uint64_t hash_clusters(const prom_build_state *b, uint64_t h)
     return hash_reps(b, h);
 }
 
+static uint64_t hash_model(const prom_build_state *b, uint64_t h)
+{
+    return prom_hash(b->model.weight, b->model.node_count * sizeof *b->model.weight, h);
+}
+
 // ---- the order of work
 
 // The profile names the device whose costs the model is meant for; it is part of the content.
@@ -240,7 +245,7 @@ static prom_status run_stages(prom_build_state *b, const char *scene, prom_error
         {"levels", prom_stage_levels, hash_levels},
         {"leaves", prom_stage_leaves, hash_reps},
         {"clusters", prom_stage_clusters, hash_clusters},
-        {"model", prom_stage_model, NULL},
+        {"model", prom_stage_model, hash_model},
     };
     uint64_t hash = 0;
     b->scene_path = scene;

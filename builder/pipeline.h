@@ -2,6 +2,7 @@
 #ifndef PROM_BUILDER_PIPELINE_H
 #define PROM_BUILDER_PIPELINE_H
 
+#include "benefit/weights.h"
 #include "builder/measure.h"
 #include "builder/objects.h"
 #include "builder/source.h"
@@ -22,6 +23,9 @@ typedef struct prom_build_options {
     prom_object_options objects;
     prom_tree_options tree;
     prom_measure_options measure;
+    // By names of the scene's nodes, of which only leaves are in the model: what is below a
+    // named one is weighed like it.
+    prom_weight_rules weights;
     uint32_t texture_mb; // bytes of impostor pictures on the device, in MiB; 0: 256
     const char *profile; // cost profile that the content names; NULL: none
     // That the work may take, beside what the device's driver does; 0: any. It changes nothing

@@ -61,6 +61,26 @@ void prom_build_place_nodes(prom_build_state *b)
     }
 }
 
+// Leaves and the background by the scene's nodes; clusters have no weight of their own.
+static void weigh(prom_build_state *b)
+{
+    prom_weight_rules rules = b->options->weights; // takes note of what matches
+    prom_model *m = &b->model;
+    float *weights = prom_alloc(b->source.nodes.count, sizeof *weights);
+    for (size_t i = 0; i < b->source.nodes.count; i++) {
+        const prom_source_node *n = &b->source.nodes.data[i];
+        float above = n->parent == PROM_NONE ? 1.0f : weights[n->parent];
+        weights[i] = prom_weight_of_name(&rules, n->name ? n->name : "", above);
+    }
+    for (uint32_t i = 0; i < m->node_count; i++) {
+        uint32_t object = i < m->tree_count ? b->tree.nodes.data[i].object
+                                            : b->tree.backdrop_objects.data[i - m->tree_count];
+        if (object != PROM_NONE) m->weight[i] = weights[b->objects.objects.data[object].node];
+    }
+    prom_weight_rules_warn(&rules);
+    prom_free(weights);
+}
+
 // Full-detail triangles below each cluster.
 static void count_triangles(prom_build_state *b)
 {
@@ -78,6 +98,7 @@ prom_status prom_stage_model(prom_build_state *b, prom_error *error)
 {
     prom_model *m = &b->model;
     count_triangles(b);
+    weigh(b);
     m->reps = b->reps.data;
     m->rep_count = (uint32_t)b->reps.count;
     m->accuracy = b->accuracy.data;

@@ -121,6 +121,7 @@ static const char *const wrong[][2] = {
     {"shot a.prom -o b.png --weight statue", "`statue'"},
     {"shot a.prom -o b.png --weight =4", "pattern"},
     {"walk a.prom --weight statue=-1", "--weight"},
+    {"build a.obj -o a.prom --weight statue=much", "--weight"},
     {"bench a.prom --benefit most", "pixels or sum"},
     {"bench a.prom --prior full-detail,", "few-pixels"},
     {"bench a.prom --hysteresis 2", "--hysteresis"},
