@@ -28,7 +28,7 @@ static const struct argp_option options[] = {
      0},
     {"hysteresis", KEY_HYSTERESIS, "X", 0,
      "For `meta` and `greedy`: what an object was drawn by in the last frame counts this part "
-     "of its pixels more, so that less changes from frame to frame (0; `walk`: 0.02)",
+     "of its pixels more, so that less changes while the camera moves (0; `walk`: 0.05)",
      0},
     {0},
 };

@@ -2,6 +2,8 @@
 
 #include "metaobj/base/clock.h"
 
+#include <string.h>
+
 prom_status prom_frame_step_init(prom_frame_step *step, prom_session *session,
                                  const char *selector, double budget_ms, double distance_scale,
                                  prom_error *error)
@@ -25,6 +27,13 @@ void prom_frame_step_finish(prom_frame_step *step)
     prom_last_cut_finish(&step->last);
 }
 
+static bool same_pose(const prom_camera *a, const prom_camera *b)
+{
+    return !memcmp(a->eye, b->eye, sizeof a->eye) &&
+           !memcmp(a->orientation, b->orientation, sizeof a->orientation);
+}
+
+// At rest nothing is stayed with: the best picture is wanted then.
 static prom_switches choose(prom_frame_step *step, const prom_camera *camera, double allowed_ms)
 {
     prom_view before = step->view;
@@ -33,6 +42,7 @@ static prom_switches choose(prom_frame_step *step, const prom_camera *camera, do
         step->session, &step->view, step->sight.visibility, allowed_ms, step->distance_scale);
     selection.last = &step->last;
     if (step->last.number) selection.weighting.before = &before;
+    if (same_pose(&before.camera, camera)) selection.hysteresis = 0.0f;
     selection.weighting.dt_s = step->dt_s;
     prom_selector_run(step->selector, &selection, &step->cut);
     return prom_last_cut_note(&step->last, &step->cut);
