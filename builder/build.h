@@ -77,7 +77,8 @@ typedef struct prom_build_state {
     uint64_t program_key, device_key; // what every unit, and every measured unit, depends on
     uint32_t units, units_taken;      // as in the report
     uint32_t views_taken;
-    uint64_t *material_keys; // per material: its values and its picture
+    uint64_t views, views_compared; // as in the report
+    uint64_t *material_keys;        // per material: its values and its picture
     prom_context *context;
     prom_renderer *renderer;
     prom_baker *baker;

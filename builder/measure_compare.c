@@ -20,7 +20,7 @@ struct measure_scratch {
     prom_rgba *rgba;         // over a background
     float *truth;            // features of the truth, of all sizes and backgrounds,
     float *other;            // and of a representation
-    float *map;              // of errors
+    float *cover, *map;      // of a window: what is covered, and the errors
     prom_patch sizes[SIZES]; // in patches
     size_t features[SIZES];  // in truth, of the first background
 };
@@ -73,6 +73,7 @@ measure_scratch *measure_scratch_create(const prom_measure *m)
     // With a wide metric the windows of many small pictures are larger than those of two.
     s->truth = prom_alloc(r.truth > small.truth ? r.truth : small.truth, sizeof *s->truth);
     s->other = prom_alloc(r.other, sizeof *s->other);
+    s->cover = prom_alloc(window, sizeof *s->cover);
     s->map = prom_alloc(window, sizeof *s->map);
     return s;
 }
@@ -87,6 +88,7 @@ void measure_scratch_destroy(measure_scratch *s)
     prom_free(s->rgba);
     prom_free(s->truth);
     prom_free(s->other);
+    prom_free(s->cover);
     prom_free(s->map);
     prom_free(s);
 }
@@ -137,57 +139,70 @@ void measure_take_truth(const prom_measure *m, measure_scratch *s, const prom_vi
     }
 }
 
-static float larger_coverage(const prom_patch *a, const prom_patch *b, size_t i)
+// What of each pixel of the padded window is covered in either picture.
+static void take_cover(const prom_measure *m, const prom_patch *a, const prom_patch *b,
+                       float *cover)
 {
-    return fmaxf(a->pixels[i][3], b->pixels[i][3]);
+    const uint32_t width = a->part.width, wide = width + 2 * m->pad;
+    memset(cover, 0, (size_t)wide * (a->part.height + 2 * m->pad) * sizeof *cover);
+    for (uint32_t y = 0; y < a->part.height; y++) {
+        const float(*pa)[4] = (const float(*)[4])a->pixels + (size_t)y * width;
+        const float(*pb)[4] = (const float(*)[4])b->pixels + (size_t)y * width;
+        float *row = cover + (size_t)(y + m->pad) * wide + m->pad;
+        for (uint32_t x = 0; x < width; x++) row[x] = pa[x][3] > pb[x][3] ? pa[x][3] : pb[x][3];
+    }
 }
 
-// The sum of the errors over the window, or of their squares.
-static double sum_errors(const prom_measure *m, const float *map, size_t count)
+static double sum_of(const float *values, size_t count)
 {
     double sum = 0.0;
-    for (size_t i = 0; i < count; i++) sum += m->metric->squares ? map[i] * map[i] : map[i];
+    for (size_t i = 0; i < count; i++) sum += (double)values[i];
+    return sum;
+}
+
+static double sum_of_squares(const float *values, size_t count)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < count; i++) sum += (double)(values[i] * values[i]);
     return sum;
 }
 
 // Whether more of the footprint's pixels are too wrong than may be.
-static bool is_vetoed(const prom_measure *m, const prom_patch *a, const prom_patch *b,
-                      const float *map)
+static bool is_vetoed(const prom_measured *how, const float *cover, const float *map,
+                      size_t count)
 {
-    const uint32_t width = a->part.width;
-    size_t footprint = 0, wrong = 0;
-    for (uint32_t y = 0; y < a->part.height; y++) {
-        const float *row = map + (size_t)(y + m->pad) * (width + 2 * m->pad) + m->pad;
-        for (uint32_t x = 0; x < width; x++) {
-            if (larger_coverage(a, b, (size_t)y * width + x) < 0.5f) continue;
-            footprint++;
-            wrong += row[x] > m->how.veto_error;
-        }
+    uint32_t footprint = 0, wrong = 0;
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t in = cover[i] >= 0.5f;
+        footprint += in;
+        wrong += in & (map[i] > how->veto_error);
     }
-    return (double)wrong > (1.0 - (double)m->how.veto_percentile) * (double)footprint;
+    return wrong > (1.0 - (double)how->veto_percentile) * footprint;
 }
 
 // Accuracy of a patch against the truth's of that size.
 static uint8_t compare_size(const prom_measure *m, uint32_t size, const prom_patch *patch,
                             measure_scratch *s)
 {
-    const prom_patch *truth = &s->sizes[size];
     const uint32_t wide = patch->part.width + 2 * m->pad;
     const uint32_t high = patch->part.height + 2 * m->pad;
+    const size_t window = (size_t)wide * high;
     const float *features = s->truth + s->features[size];
-    double area = 0.0, error = 0.0;
-    for (size_t i = 0; i < prom_part_pixels(&patch->part); i++)
-        area += larger_coverage(truth, patch, i);
-    if (area < 1.0) area = 1.0; // less than a pixel is judged as if it were one
+    take_cover(m, &s->sizes[size], patch, s->cover);
+    // Less than a pixel is judged as if it were one.
+    const double area = fmax(sum_of(s->cover, window), 1.0);
+    double error = 0.0;
     for (int b = 0; b < BACKGROUNDS; b++) {
         take_features(m, patch, m->how.background[b], s, s->other);
         prom_metric_compare(s->metric, features, s->other, wide, high, s->map);
         features += prom_metric_feature_floats(s->metric, wide, high);
-        if (prom_size_of_bin(size) >= VETO_SIZE_PX && is_vetoed(m, truth, patch, s->map))
+        if (prom_size_of_bin(size) >= VETO_SIZE_PX &&
+            is_vetoed(&m->how, s->cover, s->map, window))
             return 0;
-        double mean = sum_errors(m, s->map, (size_t)wide * high) / area;
-        error += (m->metric->squares ? sqrt(mean) : mean) / BACKGROUNDS;
+        error += m->metric->squares ? sqrt(sum_of_squares(s->map, window) / area)
+                                    : sum_of(s->map, window) / area;
     }
+    error /= BACKGROUNDS;
     return (uint8_t)(255.0 * (error < 1.0 ? 1.0 - error : 0.0));
 }
 

@@ -61,7 +61,7 @@ void prom_patch_take(const prom_views *views, uint32_t view, prom_part part, pro
 // and the last of them a part.
 typedef struct span {
     uint32_t first, end;
-    float head, tail, scale;
+    float head, tail; // weights of these; of the others: scale
 } span;
 
 // Of output pixel `i`, in an input of `count` pixels from `start` on.
@@ -69,33 +69,36 @@ static span span_of(uint32_t i, float step, uint32_t start, uint32_t count)
 {
     float from = fmaxf((float)i * step - (float)start, 0.0f);
     float to = fminf((float)(i + 1) * step - (float)start, (float)count);
-    span s = {.first = (uint32_t)from, .end = (uint32_t)ceilf(to), .scale = 1.0f / step};
-    s.head = (float)(s.first + 1) - from;
-    s.tail = to - (float)(s.end - 1);
-    if (s.first + 1 == s.end) s.head += s.tail - 1.0f;
+    span s = {.first = (uint32_t)from, .end = (uint32_t)ceilf(to)};
+    s.head = ((float)(s.first + 1) - from) / step;
+    s.tail = (to - (float)(s.end - 1)) / step;
+    if (s.first + 1 == s.end) s.head += s.tail - 1.0f / step;
     return s;
 }
 
-static float weight_in(const span *s, uint32_t i)
+static float weight_in(const span *s, float scale, uint32_t i)
 {
-    return s->scale * (i == s->first ? s->head : i + 1 == s->end ? s->tail : 1.0f);
+    return i == s->first ? s->head : i + 1 == s->end ? s->tail : scale;
 }
 
 static void average_rows(const prom_patch *in, float step, const prom_part *part,
                          float (*out)[4])
 {
-    for (uint32_t x = 0; x < part->width; x++) {
-        const span s = span_of(part->x + x, step, in->part.x, in->part.width);
-        for (uint32_t y = 0; y < in->part.height; y++) {
-            const float(*row)[4] = (const float(*)[4])in->pixels + (size_t)y * in->part.width;
+    const float scale = 1.0f / step;
+    span spans[PROM_VIEW_LARGE_PX];
+    for (uint32_t x = 0; x < part->width; x++)
+        spans[x] = span_of(part->x + x, step, in->part.x, in->part.width);
+    const float(*row)[4] = (const float(*)[4])in->pixels;
+    for (uint32_t y = 0; y < in->part.height; y++, row += in->part.width, out += part->width)
+        for (uint32_t x = 0; x < part->width; x++) {
+            const span *s = &spans[x];
             float sum[4] = {0};
-            for (uint32_t i = s.first; i < s.end; i++) {
-                const float weight = weight_in(&s, i);
+            for (uint32_t i = s->first; i < s->end; i++) {
+                const float weight = weight_in(s, scale, i);
                 for (int c = 0; c < 4; c++) sum[c] += weight * row[i][c];
             }
-            memcpy(out[(size_t)y * part->width + x], sum, sizeof sum);
+            memcpy(out[x], sum, sizeof sum);
         }
-    }
 }
 
 static void average_columns(const float (*in)[4], const prom_part *from, float step,
@@ -107,7 +110,8 @@ static void average_columns(const float (*in)[4], const prom_part *from, float s
         float *sum = out[(size_t)y * part->width];
         memset(sum, 0, row_floats * sizeof *sum);
         for (uint32_t i = s.first; i < s.end; i++) {
-            const float weight = weight_in(&s, i), *row = in[(size_t)i * part->width];
+            const float *row = in[(size_t)i * part->width];
+            const float weight = weight_in(&s, 1.0f / step, i);
             for (size_t k = 0; k < row_floats; k++) sum[k] += weight * row[k];
         }
     }
@@ -132,7 +136,8 @@ void prom_encoder_init(prom_encoder *encoder)
 
 static uint8_t encoded(const prom_encoder *encoder, float linear)
 {
-    return encoder->bytes[(int)(fminf(linear, 1.0f) * PROM_ENCODE_STEPS + 0.5f)];
+    const float most = linear < 1.0f ? linear : 1.0f;
+    return encoder->bytes[(int)(most * PROM_ENCODE_STEPS + 0.5f)];
 }
 
 void prom_patch_compose(const prom_patch *patch, const prom_encoder *encoder, float background,
@@ -147,7 +152,7 @@ void prom_patch_compose(const prom_patch *patch, const prom_encoder *encoder, fl
         uint8_t(*out)[4] = rgba + (y + pad) * wide + pad;
         for (uint32_t x = 0; x < width; x++) {
             if (in[x][3] <= 0.0f) continue;
-            const float behind = fmaxf(1.0f - in[x][3], 0.0f) * background;
+            const float behind = (1.0f - in[x][3]) * background;
             for (int c = 0; c < 3; c++) out[x][c] = encoded(encoder, in[x][c] + behind);
         }
     }

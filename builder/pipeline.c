@@ -278,6 +278,8 @@ static void fill_report(const prom_build_state *b, const char *path, prom_build_
         .units = b->units,
         .units_taken = b->units_taken,
         .views_taken = b->views_taken,
+        .views = b->views,
+        .views_compared = b->views_compared,
     };
     for (uint32_t i = 0; i < m->tree_count; i++)
         if (m->child_count[i] > report->max_children) report->max_children = m->child_count[i];

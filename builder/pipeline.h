@@ -44,6 +44,9 @@ typedef struct prom_build_report {
     uint32_t objects, prototypes, nodes, max_children, representations;
     uint32_t units, units_taken; // of work: all, and those taken from earlier builds
     uint32_t views_taken;        // prototypes measured anew in pictures from earlier builds
+    // Directions from which representations were measured in this build, and in how many of
+    // them pictures were compared; in the others accuracies are interpolated.
+    uint64_t views, views_compared;
     uint64_t file_bytes, work_bytes, peak_bytes;
 } prom_build_report;
 

@@ -201,8 +201,11 @@ static void settle(prom_subject *s, prom_candidate *c)
         return;
     }
     uint32_t gaps = 0;
-    for (uint32_t d = 0; d < PROM_DIRS; d++)
+    for (uint32_t d = 0; d < PROM_DIRS; d++) {
         if (c->result.gaps[d] > gaps) gaps = c->result.gaps[d];
+        s->build->views_compared += c->result.compared[d];
+    }
+    s->build->views += PROM_DIRS;
     if (mesh && rep->error > 0)
         rep->near_k = fit_near(&c->result.accuracy, rep->error, radius_of(s));
     if (mesh && gaps > 0) rep->max_size_px = PROM_GAP_PX * sqrtf(GAPS_SHOWN_PX / (float)gaps);
