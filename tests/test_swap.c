@@ -1,8 +1,9 @@
 // LINK: prom_metaobj PkgConfig::JANSSON
 // NEEDS: promenade
 //
-// The swap test and the oracle on a small city: finite numbers, the same on every run, in the
-// report, the table and the plot. Skips where there is no GL.
+// The swap test and the oracle on a street of boxes: finite numbers, the same on every run, in
+// the report, the table and the plot. Skips where there is no GL.
+#include "tests/obj_street.h"
 #include "tests/run_program.h"
 
 #include <math.h>
@@ -17,7 +18,7 @@
 #define VIEWS 6
 #define SWAPS 5
 #define BENCH                                                                                  \
-    "bench city.prom --path city.path --frames 120 --warmup 0 --quality-frames 0 "             \
+    "bench street.prom --frames 120 --warmup 0 --quality-frames 0 "                            \
     "--budget-ms 1.5 --selector greedy --resolution 160,90 --profile p.json --quiet "
 
 static program_run run;
@@ -40,9 +41,8 @@ static int make_model(void **state)
         return 0;
     }
     assert_int_equal(run.code, 0);
-    expect("scene city --seed 7 --size 1 --detail 1 --styles 2 -o city.glb --path city.path",
-           0);
-    expect("build city.glb -o city.prom --quiet", 0);
+    write_street("street.obj", 40, 0, 0);
+    expect("build street.obj -o street.prom --quiet", 0);
     return 0;
 }
 
@@ -135,17 +135,20 @@ static void files_need_the_test(void **state)
 {
     (void)state;
     NEED_DEVICE();
-    expect("bench city.prom --swap-csv s.csv", 1);
+    expect("bench street.prom --swap-csv s.csv", 1);
     assert_non_null(strstr(run.err, "--swap-test"));
 }
 
+// The cheapest cut leaves it time to do better with.
 static void the_oracle_is_no_worse(void **state)
 {
     (void)state;
     NEED_DEVICE();
     json_t *reports[2], *oracle = NULL, *frame;
     for (int i = 0; i < 2; i++) {
-        expect(BENCH "--oracle 60 --oracle-frames 3 --report r.json", 0);
+        expect(BENCH "--selector coarsest --budget-ms 50 --oracle 60 --oracle-frames 3 "
+                     "--report r.json",
+               0);
         assert_non_null(strstr(run.out, "\noracle "));
         reports[i] = json_load_file("r.json", 0, NULL);
         assert_true(json_is_null(found(reports[i], "swap")));
@@ -158,9 +161,7 @@ static void the_oracle_is_no_worse(void **state)
     {
         assert_true(number(frame, "best_flip") >= 0);
         assert_true(number(frame, "best_flip") <= number(frame, "flip"));
-        // Up to the budget, or what the cheapest cut takes.
-        double limit = fmax(1.5, number(frame, "predicted_ms"));
-        assert_true(number(frame, "best_ms") <= limit * (1 + 1e-6));
+        assert_true(number(frame, "best_ms") <= 50);
     }
     assert_int_equal(index, 3);
     assert_true(number(oracle, "best_flip") < number(oracle, "flip")); // something was found
