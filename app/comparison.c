@@ -1,5 +1,6 @@
 #include "app/comparison.h"
 
+#include "app/counted_picture.h"
 #include "app/pixel_shares.h"
 
 #include <math.h>
@@ -73,35 +74,16 @@ void prom_comparison_finish(prom_comparison *comparison)
     *comparison = (prom_comparison){0};
 }
 
-static void draw(const prom_comparison *c, prom_session *session, const prom_camera *camera,
-                 const prom_cut *cut, prom_ids ids)
-{
-    prom_frame_options options = {.ids = ids};
-    prom_renderer_draw_frame(session->renderer, session->list, c->target, &session->model, cut,
-                             camera, &options);
-}
-
-static void count(const prom_comparison *c, const prom_session *session,
-                  const prom_camera *camera, uint32_t *px)
-{
-    prom_target_read_ids(c->target, 0, 0, camera->width, camera->height, c->ids);
-    prom_count_pixels(c->ids, (size_t)camera->width * camera->height, session->model.tree_count,
-                      px);
-}
-
-// What is blended is counted from a second drawing, for it hides nothing: a pixel may show both
-// a pane and what is behind it.
 static void look(const prom_comparison *c, prom_session *session, const prom_camera *camera,
                  const prom_cut *cut, bool counted, prom_compared *picture)
 {
-    draw(c, session, camera, cut, PROM_IDS_OPAQUE);
+    if (counted) {
+        prom_picture_draw_counted(session, c->target, camera, cut, picture->rgba, picture->px,
+                                  c->ids);
+        return;
+    }
+    prom_picture_draw(session, c->target, camera, cut, PROM_IDS_NONE);
     prom_target_read_rgba(c->target, 0, 0, camera->width, camera->height, picture->rgba);
-    if (!counted) return;
-    memset(picture->px, 0, session->model.tree_count * sizeof *picture->px);
-    count(c, session, camera, picture->px);
-    if (!prom_draw_list_has_blended(session->list)) return;
-    draw(c, session, camera, cut, PROM_IDS_BLENDED);
-    count(c, session, camera, picture->px);
 }
 
 static double holes_share(const uint8_t *truth, const uint8_t *shown, size_t pixels)

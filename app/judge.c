@@ -1,6 +1,6 @@
 #include "app/judge.h"
 
-#include "app/pixel_shares.h"
+#include "app/counted_picture.h"
 
 #include <math.h>
 
@@ -40,59 +40,32 @@ void prom_judge_finish(prom_judge *judge)
     *judge = (prom_judge){0};
 }
 
-static void draw(prom_judge *j, const prom_cut *cut, prom_ids ids)
-{
-    prom_session *s = j->session;
-    const prom_frame_options options = {.ids = ids};
-    prom_renderer_draw_frame(s->renderer, s->list, j->target, &s->model, cut, &j->camera,
-                             &options);
-}
-
-static void read_ids(prom_judge *j)
-{
-    prom_target_read_ids(j->target, 0, 0, j->camera.width, j->camera.height, j->ids);
-}
-
+// Of the picture in j->rgba.
 static void find_features(prom_judge *j, float *features)
 {
-    uint32_t width = j->camera.width, height = j->camera.height;
-    prom_target_read_rgba(j->target, 0, 0, width, height, j->rgba);
     const prom_picture picture = {
-        .width = width, .height = height, .channels = 4, .pixels = j->rgba};
+        .width = j->camera.width, .height = j->camera.height, .channels = 4, .pixels = j->rgba};
     prom_metric_features(j->metric, &picture, features);
-}
-
-// What is blended is counted from a second drawing, for it hides nothing: a pixel may show both
-// a pane and what is behind it.
-static void count(prom_judge *j)
-{
-    const prom_model *m = &j->session->model;
-    memset(j->px, 0, m->tree_count * sizeof *j->px);
-    read_ids(j);
-    prom_count_pixels(j->ids, j->pixels, m->tree_count, j->px);
-    if (prom_draw_list_has_blended(j->session->list)) {
-        draw(j, &j->cut, PROM_IDS_BLENDED);
-        read_ids(j);
-        prom_count_pixels(j->ids, j->pixels, m->tree_count, j->px);
-    }
-    for (uint32_t n = m->tree_count; n-- > 1;) j->px[m->parent[n]] += j->px[n];
 }
 
 void prom_judge_look(prom_judge *judge, const prom_camera *camera)
 {
     prom_judge *j = judge;
+    const prom_model *m = &j->session->model;
     j->camera = *camera;
     prom_session_select(j->session, j->full, NULL, camera, INFINITY, 1, &j->cut);
-    draw(j, &j->cut, PROM_IDS_OPAQUE);
+    prom_picture_draw_counted(j->session, j->target, camera, &j->cut, j->rgba, j->px, j->ids);
+    for (uint32_t n = m->tree_count; n-- > 1;) j->px[m->parent[n]] += j->px[n];
     find_features(j, j->truth);
-    count(j);
 }
 
+// Of the picture in the target with full detail's.
 static double compare(prom_judge *j)
 {
+    uint32_t width = j->camera.width, height = j->camera.height;
+    prom_target_read_rgba(j->target, 0, 0, width, height, j->rgba);
     find_features(j, j->shown);
-    prom_metric_compare(j->metric, j->truth, j->shown, j->camera.width, j->camera.height,
-                        j->map);
+    prom_metric_compare(j->metric, j->truth, j->shown, width, height, j->map);
     double sum = 0;
     for (size_t i = 0; i < j->pixels; i++) sum += (double)j->map[i];
     return sum;
@@ -100,18 +73,19 @@ static double compare(prom_judge *j)
 
 double prom_judge_run(prom_judge *judge, const prom_cut *cut)
 {
-    draw(judge, cut, PROM_IDS_NONE);
+    prom_picture_draw(judge->session, judge->target, &judge->camera, cut, PROM_IDS_NONE);
     return compare(judge);
 }
 
 double prom_judge_nodes(prom_judge *judge, const prom_cut *cut, double *error)
 {
-    uint32_t tree_count = judge->session->model.tree_count;
-    draw(judge, cut, PROM_IDS_OPAQUE);
-    double sum = compare(judge);
-    read_ids(judge);
+    prom_judge *j = judge;
+    uint32_t tree_count = j->session->model.tree_count;
+    prom_picture_draw(j->session, j->target, &j->camera, cut, PROM_IDS_OPAQUE);
+    double sum = compare(j);
+    prom_target_read_ids(j->target, 0, 0, j->camera.width, j->camera.height, j->ids);
     memset(error, 0, tree_count * sizeof *error);
-    for (size_t i = 0; i < judge->pixels; i++)
-        if (judge->ids[i] < tree_count) error[judge->ids[i]] += (double)judge->map[i];
+    for (size_t i = 0; i < j->pixels; i++)
+        if (j->ids[i] < tree_count) error[j->ids[i]] += (double)j->map[i];
     return sum;
 }
