@@ -142,13 +142,13 @@ json_t *prom_oracle_json(const prom_oracle_result *result)
 void prom_oracle_print(const prom_oracle_result *result)
 {
     prom_oracle_frame mean = mean_of(result);
-    printf("oracle     FLIP %.4f of the cuts, %.4f of the best of %u tries (%.0f %%), mean of "
+    printf("oracle     FLIP %.5f of the cuts, %.5f of the best of %u tries (%.0f %%), mean of "
            "%zu frames\n",
            mean.flip, mean.best_flip, result->tries, 100 * ratio_of(&mean),
            result->frames.count);
     for (size_t i = 0; i < result->frames.count; i++) {
         const prom_oracle_frame *f = &result->frames.data[i];
-        printf("  frame %-6u %.4f, best %.4f (%.0f %%), predicted %.1f ms, best %.1f\n",
+        printf("  frame %-6u %.5f, best %.5f (%.0f %%), predicted %.1f ms, best %.1f\n",
                f->frame, f->flip, f->best_flip, 100 * ratio_of(f), f->predicted_ms, f->best_ms);
     }
 }
