@@ -4,6 +4,7 @@
 #include "app/info_object.h"
 #include "app/object_views.h"
 #include "app/view_error.h"
+#include "benefit/accuracy.h"
 #include "benefit/colour_map.h"
 #include "builder/image_io.h"
 
@@ -223,8 +224,8 @@ static void draw_truth(sheet *s)
 static double stored_accuracy(const sheet *s, uint32_t rep, uint32_t dir)
 {
     const prom_accuracy_row *row = &s->model->accuracy[rep];
-    return (is_large(s) ? row->large[dir][s->size - PROM_SIZES] : row->bins[dir][s->size]) /
-           255.0;
+    return (double)prom_accuracy_of_byte(is_large(s) ? row->large[dir][s->size - PROM_SIZES]
+                                                     : row->bins[dir][s->size]);
 }
 
 static void draw_accuracy(sheet *s, uint32_t x, uint32_t y, uint32_t rep, uint32_t dir,

@@ -1,6 +1,7 @@
 #include "app/info_tables.h"
 
 #include "app/output.h"
+#include "benefit/accuracy.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -47,7 +48,7 @@ static uint64_t print_rep(FILE *out, const prom_model *m, uint32_t node, uint32_
             uint8_t accuracy = s < PROM_SIZES ? m->accuracy[r].bins[dir][s]
                                               : m->accuracy[r].large[dir][s - PROM_SIZES];
             fprintf(out, "%s,%u,%.4g,%.4g,%.4g,%.4g,%.4f,%.4f\n", start, dir, x, y, z,
-                    prom_size_of_bin(s), accuracy / 255.0, coverage);
+                    prom_size_of_bin(s), (double)prom_accuracy_of_byte(accuracy), coverage);
         }
     }
     free(start); // of open_memstream

@@ -28,32 +28,39 @@ static float mean(const float *values, const float *weights, int count)
     return sum;
 }
 
+uint8_t prom_byte_of_accuracy(double accuracy)
+{
+    const double exact = 1e-3; // of a step: what a byte stands for becomes that byte
+    double root = sqrt(fmin(fmax(1.0 - accuracy, 0.0) / (double)PROM_ERROR_MAX, 1.0));
+    return (uint8_t)(255.0 * (1.0 - root) + exact);
+}
+
 // Up to the largest size of all directions.
 static float far_accuracy(const prom_accuracy_row *row, const prom_accuracy_place *place)
 {
     float values[4];
     for (int k = 0; k < 4; k++) {
         const uint8_t *a = &row->bins[place->around.dir[k]][place->size];
-        values[k] = between((float)a[0], (float)a[1], place->t);
+        values[k] = between(prom_accuracy_of_byte(a[0]), prom_accuracy_of_byte(a[1]), place->t);
     }
-    return mean(values, place->around.weight, 4) / 255.0f;
+    return mean(values, place->around.weight, 4);
 }
 
-// What is left along the axes of the accuracy at PROM_SIZE_MAX_PX.
-static float large_ratio(const prom_accuracy_row *row, const prom_accuracy_place *place)
+// How much lower the accuracy is along the axes than it is there at PROM_SIZE_MAX_PX.
+static float large_loss(const prom_accuracy_row *row, const prom_accuracy_place *place)
 {
     float means[1 + PROM_SIZES_LARGE], values[3];
     for (int s = 0; s <= PROM_SIZES_LARGE; s++) {
         for (int k = 0; k < 3; k++) {
             uint32_t dir = place->axes.dir[k];
-            values[k] = (float)(s ? row->large[dir][s - 1] : row->bins[dir][PROM_SIZES - 1]);
+            values[k] = prom_accuracy_of_byte(s ? row->large[dir][s - 1]
+                                                : row->bins[dir][PROM_SIZES - 1]);
         }
         means[s] = mean(values, place->axes.weight, 3);
     }
-    if (!(means[0] > 0.0f)) return 1.0f; // nothing to see along the axes
     float bin = fminf(prom_bin_of_size(place->size_px) - (PROM_SIZES - 1), PROM_SIZES_LARGE);
     int s = bin < PROM_SIZES_LARGE - 1 ? (int)bin : PROM_SIZES_LARGE - 1;
-    return fminf(between(means[s], means[s + 1], bin - (float)s) / means[0], 1.0f);
+    return fmaxf(means[0] - between(means[s], means[s + 1], bin - (float)s), 0.0f);
 }
 
 static float near_ratio(const prom_representation *rep, float size_px, float radius)
@@ -71,10 +78,11 @@ float prom_accuracy(const prom_model *model, uint32_t rep, const prom_accuracy_p
     float accuracy = far_accuracy(row, place);
     if (place->size_px <= PROM_SIZE_MAX_PX) return accuracy;
     const prom_representation *r = &model->reps[rep];
+    const float least = 1.0f - PROM_ERROR_MAX;
     if (r->kind != PROM_REP_MESH)
-        return fmaxf(1.0f - (1.0f - accuracy) * place->size_px / PROM_SIZE_MAX_PX, 0.0f);
-    accuracy *= large_ratio(row, place);
-    if (place->size_px <= PROM_SIZE_MAX_LARGE_PX) return accuracy;
+        return fmaxf(1.0f - (1.0f - accuracy) * place->size_px / PROM_SIZE_MAX_PX, least);
+    accuracy = fmaxf(accuracy - large_loss(row, place), least);
+    if (place->size_px <= PROM_SIZE_MAX_LARGE_PX || accuracy < 0.0f) return accuracy;
     return accuracy * near_ratio(r, place->size_px, radius);
 }
 

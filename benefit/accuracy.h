@@ -4,6 +4,20 @@
 
 #include "metaobj/model.h"
 
+// An accuracy is 1 - error. The error is the sum over all pixels in which a representation
+// looks otherwise than the object, divided by the pixels of the object: above 1, and the
+// accuracy below 0, where it spoils more of its surroundings than the object has pixels, as a
+// box in the place of a lamp post does. It is kept as a byte, in steps that are finest near 1:
+//     error = PROM_ERROR_MAX * ((255 - byte) / 255)^2.
+#define PROM_ERROR_MAX 4.0f
+static inline float prom_accuracy_of_byte(uint8_t byte)
+{
+    float root = (float)(255 - byte) / 255.0f;
+    return 1.0f - PROM_ERROR_MAX * root * root;
+}
+// Never promises more: the next byte at or below; 0 for errors above PROM_ERROR_MAX.
+uint8_t prom_byte_of_accuracy(double accuracy);
+
 // A place in the tables: what all representations of a node seen in one view have in common.
 typedef struct prom_accuracy_place {
     float uv[2];   // direction towards the eye, on the octahedral map
@@ -17,12 +31,12 @@ typedef struct prom_accuracy_place {
 // uv: prom_octahedral_encode of the direction in the prototype's frame.
 void prom_accuracy_place_init(prom_accuracy_place *place, const float uv[2], float size_px);
 
-// Accuracy in [0,1] of representation `rep` at a place: bilinear between the directions, linear
-// in log2 of the size between the size bins, the smallest bin's value below. Above
+// Accuracy, at most 1, of representation `rep` at a place: bilinear between the directions,
+// linear in log2 of the size between the size bins, the smallest bin's value below. Above
 // PROM_SIZE_MAX_PX:
-//   meshes: the value there times the ratio, at most 1, of the large sizes' values to it along
-//   the
-//     axes; and from PROM_SIZE_MAX_LARGE_PX on times near(e_px) / near(e_px there), with
+//   meshes: the value there, less what the large sizes' values are lower along the axes; and
+//   from
+//     PROM_SIZE_MAX_LARGE_PX on, where above 0, times near(e_px) / near(e_px there), with
 //     near(e) = 1 / (1 + near_k * e) and e_px = error * size_px / (2 * radius);
 //   others: the error grows with the size.
 // Continuous; nowhere above what was measured around the place; 1 for full geometry.

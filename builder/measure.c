@@ -1,5 +1,6 @@
 #include "builder/measure_private.h"
 
+#include "benefit/accuracy.h"
 #include "metaobj/base/alloc.h"
 #include "metaobj/base/hash.h"
 #include "metaobj/base/math.h"
@@ -8,11 +9,12 @@
 #include <stdio.h>
 #include <string.h>
 
+#define CONSTANT_ACCURACY 0.5 // of everything, with `constant`
 #define GAP_STEP (PROM_VIEW_PX / PROM_GAP_PX)
 
-// More than one in twenty of a footprint's pixels this wrong, and a part of the object is
-// missing or of another colour (by taste; seen on the scenes).
-#define VETO_PERCENTILE 0.95f
+// If more than a hundredth of a footprint lies well within parts as wrong as this, a piece of
+// the object is missing or something else is there (by taste; seen on the scenes).
+#define VETO_PERCENTILE 0.99f
 #define VETO_ERROR 0.8f
 
 // Coarse directions disagree about one between them if their accuracies differ by more than
@@ -149,8 +151,8 @@ static void compare_in_view(const prom_measure *m, unsigned thread,
     if (!m->metric) { // constant
         for (size_t i = 0; i < measuring->count; i++)
             if (is_wanted(measuring->others[i], view))
-                memset(accuracies_in(measuring->others[i], view), 127,
-                       sizes_of_view(view).count);
+                memset(accuracies_in(measuring->others[i], view),
+                       prom_byte_of_accuracy(CONSTANT_ACCURACY), sizes_of_view(view).count);
         return;
     }
     measure_scratch *s = m->scratches[thread];
@@ -195,9 +197,10 @@ static void interpolate(prom_accuracy_row *row, uint32_t dir, const uint32_t *ar
                         uint32_t count)
 {
     for (uint32_t s = 0; s < PROM_SIZES; s++) {
-        uint32_t sum = 0;
-        for (uint32_t k = 0; k < count; k++) sum += row->bins[around[k]][s];
-        row->bins[dir][s] = (uint8_t)(sum / count);
+        double sum = 0.0;
+        for (uint32_t k = 0; k < count; k++)
+            sum += (double)prom_accuracy_of_byte(row->bins[around[k]][s]);
+        row->bins[dir][s] = prom_byte_of_accuracy(sum / count);
     }
 }
 
@@ -264,21 +267,25 @@ void prom_measure_step(prom_measure *m, unsigned thread, prom_measuring *measuri
 
 // ---- along an axis from which nothing is seen
 
-// What is left at the large sizes along the axes that see the object, of what they have at the
-// largest of the others.
+// They lose at the large sizes what the axes that see the object lose, in the mean, of what
+// they have at the largest of the others.
 static void fill_unseen_axes(const prom_views *truth, prom_accuracy_row *row)
 {
-    uint32_t before = 0, after[PROM_SIZES_LARGE] = {0};
+    double lost[PROM_SIZES_LARGE] = {0};
+    uint32_t seen = 0;
     for (uint32_t axis = 0; axis < PROM_DIRS_LARGE; axis++) {
         if (!truth->at[PROM_DIRS + axis].covered) continue;
-        before += row->bins[axis][PROM_SIZES - 1];
-        for (uint32_t s = 0; s < PROM_SIZES_LARGE; s++) after[s] += row->large[axis][s];
+        seen++;
+        for (uint32_t s = 0; s < PROM_SIZES_LARGE; s++)
+            lost[s] += (double)(prom_accuracy_of_byte(row->bins[axis][PROM_SIZES - 1]) -
+                                prom_accuracy_of_byte(row->large[axis][s]));
     }
     for (uint32_t axis = 0; axis < PROM_DIRS_LARGE; axis++) {
         if (truth->at[PROM_DIRS + axis].covered) continue;
-        const uint32_t own = row->bins[axis][PROM_SIZES - 1];
+        const double own = (double)prom_accuracy_of_byte(row->bins[axis][PROM_SIZES - 1]);
         for (uint32_t s = 0; s < PROM_SIZES_LARGE; s++)
-            row->large[axis][s] = (uint8_t)(after[s] < before ? own * after[s] / before : own);
+            row->large[axis][s] =
+                prom_byte_of_accuracy(seen ? own - fmax(lost[s] / seen, 0.0) : own);
     }
 }
 

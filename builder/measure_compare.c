@@ -1,5 +1,6 @@
 #include "builder/measure_private.h"
 
+#include "benefit/accuracy.h"
 #include "metaobj/base/math.h"
 
 #include <string.h>
@@ -20,7 +21,7 @@ struct measure_scratch {
     prom_rgba *rgba;         // over a background
     float *truth;            // features of the truth, of all sizes and backgrounds,
     float *other;            // and of a representation
-    float *cover, *map;      // of a window: what is covered, and the errors
+    float *map;              // of errors
     prom_patch sizes[SIZES]; // in patches
     size_t features[SIZES];  // in truth, of the first background
 };
@@ -73,7 +74,6 @@ measure_scratch *measure_scratch_create(const prom_measure *m)
     // With a wide metric the windows of many small pictures are larger than those of two.
     s->truth = prom_alloc(r.truth > small.truth ? r.truth : small.truth, sizeof *s->truth);
     s->other = prom_alloc(r.other, sizeof *s->other);
-    s->cover = prom_alloc(window, sizeof *s->cover);
     s->map = prom_alloc(window, sizeof *s->map);
     return s;
 }
@@ -88,7 +88,6 @@ void measure_scratch_destroy(measure_scratch *s)
     prom_free(s->rgba);
     prom_free(s->truth);
     prom_free(s->other);
-    prom_free(s->cover);
     prom_free(s->map);
     prom_free(s);
 }
@@ -139,20 +138,6 @@ void measure_take_truth(const prom_measure *m, measure_scratch *s, const prom_vi
     }
 }
 
-// What of each pixel of the padded window is covered in either picture.
-static void take_cover(const prom_measure *m, const prom_patch *a, const prom_patch *b,
-                       float *cover)
-{
-    const uint32_t width = a->part.width, wide = width + 2 * m->pad;
-    memset(cover, 0, (size_t)wide * (a->part.height + 2 * m->pad) * sizeof *cover);
-    for (uint32_t y = 0; y < a->part.height; y++) {
-        const float(*pa)[4] = (const float(*)[4])a->pixels + (size_t)y * width;
-        const float(*pb)[4] = (const float(*)[4])b->pixels + (size_t)y * width;
-        float *row = cover + (size_t)(y + m->pad) * wide + m->pad;
-        for (uint32_t x = 0; x < width; x++) row[x] = pa[x][3] > pb[x][3] ? pa[x][3] : pb[x][3];
-    }
-}
-
 static double sum_of(const float *values, size_t count)
 {
     double sum = 0.0;
@@ -167,17 +152,34 @@ static double sum_of_squares(const float *values, size_t count)
     return sum;
 }
 
-// Whether more of the footprint's pixels are too wrong than may be.
-static bool is_vetoed(const prom_measured *how, const float *cover, const float *map,
-                      size_t count)
+// Whether more of the footprint than may be lies in the middle of something wrong: pixels that
+// end a square of wrong ones which no edge of an outline fills. The map becomes the sides of
+// the largest such squares.
+static bool is_vetoed(const prom_measured *how, float size_px, double area, float *map,
+                      uint32_t width, uint32_t height)
 {
-    uint32_t footprint = 0, wrong = 0;
-    for (size_t i = 0; i < count; i++) {
-        const uint32_t in = cover[i] >= 0.5f;
-        footprint += in;
-        wrong += in & (map[i] > how->veto_error);
+    const float side = 1.0f + 2.0f * roundf(size_px / VETO_SIZE_PX);
+    uint32_t ends = 0;
+    for (uint32_t y = 0; y < height; y++) {
+        float *row = map + (size_t)y * width, *above = row - width;
+        for (uint32_t x = 0; x < width; x++) {
+            bool wrong = row[x] > how->veto_error;
+            row[x] = 0.0f;
+            if (!wrong) continue;
+            bool inner = x > 0 && y > 0;
+            row[x] = 1.0f + (inner ? fminf(fminf(row[x - 1], above[x]), above[x - 1]) : 0.0f);
+            ends += row[x] >= side;
+        }
     }
-    return wrong > (1.0 - (double)how->veto_percentile) * footprint;
+    return ends > (1.0 - (double)how->veto_percentile) * area;
+}
+
+static double covered_area(const prom_patch *patch)
+{
+    double area = 0.0;
+    for (size_t i = 0; i < prom_part_pixels(&patch->part); i++)
+        area += (double)patch->pixels[i][3];
+    return area;
 }
 
 // Accuracy of a patch against the truth's of that size.
@@ -187,23 +189,20 @@ static uint8_t compare_size(const prom_measure *m, uint32_t size, const prom_pat
     const uint32_t wide = patch->part.width + 2 * m->pad;
     const uint32_t high = patch->part.height + 2 * m->pad;
     const size_t window = (size_t)wide * high;
-    const float *features = s->truth + s->features[size];
-    take_cover(m, &s->sizes[size], patch, s->cover);
+    const float *features = s->truth + s->features[size], size_px = prom_size_of_bin(size);
     // Less than a pixel is judged as if it were one.
-    const double area = fmax(sum_of(s->cover, window), 1.0);
+    const double area = fmax(covered_area(&s->sizes[size]), 1.0);
     double error = 0.0;
     for (int b = 0; b < BACKGROUNDS; b++) {
         take_features(m, patch, m->how.background[b], s, s->other);
         prom_metric_compare(s->metric, features, s->other, wide, high, s->map);
         features += prom_metric_feature_floats(s->metric, wide, high);
-        if (prom_size_of_bin(size) >= VETO_SIZE_PX &&
-            is_vetoed(&m->how, s->cover, s->map, window))
-            return 0;
         error += m->metric->squares ? sqrt(sum_of_squares(s->map, window) / area)
                                     : sum_of(s->map, window) / area;
+        if (size_px >= VETO_SIZE_PX && is_vetoed(&m->how, size_px, area, s->map, wide, high))
+            return 0;
     }
-    error /= BACKGROUNDS;
-    return (uint8_t)(255.0 * (error < 1.0 ? 1.0 - error : 0.0));
+    return prom_byte_of_accuracy(1.0 - error / BACKGROUNDS);
 }
 
 void measure_compare(const prom_measure *m, measure_scratch *s, const prom_views *views,

@@ -135,23 +135,24 @@ static uint32_t main_shading(const prom_build_state *b, const prom_mesh *mesh)
 }
 
 // The near-field function through the rows of a mesh. What is measured along the axes alone
-// counts by what it is of the accuracy there at the largest of the other sizes.
+// counts by how much lower it is than there at the largest of the other sizes.
 static float fit_near(const prom_accuracy_row *row, float error, float radius)
 {
     enum { SIZES = PROM_SIZES + PROM_SIZES_LARGE };
-    float e_px[SIZES], mean[SIZES], sum[SIZES] = {0}, axes = 0.0f;
+    float e_px[SIZES], mean[SIZES] = {0}, axes = 0.0f;
     for (uint32_t d = 0; d < PROM_DIRS; d++)
-        for (uint32_t s = 0; s < PROM_SIZES; s++) sum[s] += row->bins[d][s];
+        for (uint32_t s = 0; s < PROM_SIZES; s++)
+            mean[s] += prom_accuracy_of_byte(row->bins[d][s]) / PROM_DIRS;
     for (uint32_t d = 0; d < PROM_DIRS_LARGE; d++) {
-        axes += row->bins[d][PROM_SIZES - 1];
-        for (uint32_t s = PROM_SIZES; s < SIZES; s++) sum[s] += row->large[d][s - PROM_SIZES];
+        axes += prom_accuracy_of_byte(row->bins[d][PROM_SIZES - 1]) / PROM_DIRS_LARGE;
+        for (uint32_t s = PROM_SIZES; s < SIZES; s++)
+            mean[s] += prom_accuracy_of_byte(row->large[d][s - PROM_SIZES]) / PROM_DIRS_LARGE;
     }
     for (uint32_t s = 0; s < SIZES; s++) {
         e_px[s] = error * prom_size_of_bin(s) / (2.0f * radius);
-        mean[s] = sum[s] / (255.0f * PROM_DIRS);
-        if (s >= PROM_SIZES)
-            mean[s] = axes > 0.0f ? mean[PROM_SIZES - 1] * fminf(sum[s] / axes, 1.0f) : NAN;
+        if (s >= PROM_SIZES) mean[s] = mean[PROM_SIZES - 1] - fmaxf(axes - mean[s], 0.0f);
     }
+    for (uint32_t s = 0; s < SIZES; s++) mean[s] = fmaxf(mean[s], 0.0f);
     return prom_accuracy_fit_near(e_px, mean, SIZES);
 }
 

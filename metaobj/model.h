@@ -101,7 +101,8 @@ typedef struct prom_texture_info {
     uint32_t kind, width, height, layers, levels;
 } prom_texture_info;
 
-// Accuracies of a representation, 255 = 1, per view bin; 0 where it is not to be shown at all.
+// Accuracies of a representation per view bin, 255 = 1 (benefit/accuracy.h); 0 where it is not
+// to be shown at all.
 typedef struct prom_accuracy_row {
     uint8_t bins[PROM_DIRS][PROM_SIZES];
     uint8_t large[PROM_DIRS_LARGE][PROM_SIZES_LARGE]; // of meshes; else 0

@@ -58,6 +58,12 @@ static inline void random_rotation(uint64_t *seed, float scale, bool mirror, flo
     for (int i = 0; i < 9; i++) basis[i] = r[i] * scale * (mirror && i < 3 ? -1.0f : 1.0f);
 }
 
+// As prom_byte_of_accuracy, for tests that link no benefit.
+static inline uint8_t random_accuracy_byte(float accuracy)
+{
+    return (uint8_t)(255.0f * (1.0f - sqrtf((1.0f - fminf(accuracy, 1.0f)) / 4.0f)));
+}
+
 // Appends one representation; accuracies fall with `quality`, vary by direction and size.
 static inline void random_add_rep(prom_model *m, uint64_t *seed, prom_rep_kind kind,
                                   uint32_t level, float error, uint32_t triangles,
@@ -84,14 +90,12 @@ static inline void random_add_rep(prom_model *m, uint64_t *seed, prom_rep_kind k
     m->meshes[r] = (prom_mesh_info){triangles, 3 * triangles, 1};
     for (uint32_t d = 0; d < PROM_DIRS; d++)
         for (uint32_t s = 0; s < PROM_SIZES; s++)
-            m->accuracy[r].bins[d][s] =
-                (uint8_t)(255.0f *
-                          (quality >= 1.0f ? 1.0f : quality * random_between(seed, 0.8f, 1)));
+            m->accuracy[r].bins[d][s] = random_accuracy_byte(
+                quality >= 1.0f ? 1.0f : quality * random_between(seed, 0.8f, 1));
     for (uint32_t d = 0; d < PROM_DIRS_LARGE && kind == PROM_REP_MESH; d++)
         for (uint32_t s = 0; s < PROM_SIZES_LARGE; s++)
-            m->accuracy[r].large[d][s] =
-                (uint8_t)(quality >= 1.0f ? 255
-                                          : m->accuracy[r].bins[d][PROM_SIZES - 1] / (2 + s));
+            m->accuracy[r].large[d][s] = random_accuracy_byte(
+                quality >= 1.0f ? 1.0f : quality * 0.8f / (1.2f + 0.2f * (float)s));
 }
 
 static inline void random_prototype(prom_model *m, uint64_t *seed, uint32_t children)

@@ -13,6 +13,21 @@ static const random_model_options small_model = {.leaves = 40, .max_children = 7
 
 // ---- accuracy
 
+static void bytes_never_promise_more(void **state)
+{
+    (void)state;
+    for (int byte = 0; byte < 256; byte++)
+        assert_int_equal(prom_byte_of_accuracy(prom_accuracy_of_byte((uint8_t)byte)), byte);
+    for (double accuracy = -5.0; accuracy <= 1.0; accuracy += 1e-4) {
+        double kept = (double)prom_accuracy_of_byte(prom_byte_of_accuracy(accuracy));
+        assert_true(kept <= fmax(accuracy, 1.0 - (double)PROM_ERROR_MAX) + 1e-4);
+        assert_true(kept > accuracy - 0.04);
+        if (accuracy > 0.9) assert_true(kept > accuracy - 0.006);
+    }
+    assert_int_equal(prom_byte_of_accuracy(1.5), 255);
+    assert_int_equal(prom_byte_of_accuracy(-9), 0);
+}
+
 static prom_accuracy_place place_of(uint32_t dir, float size_px)
 {
     float direction[3], uv[2];
@@ -68,11 +83,11 @@ static void accuracy_meets_its_table_and_is_continuous(void **state)
             for (uint32_t s = 0; s < PROM_SIZES; s++)
                 assert_float_equal(
                     accuracy_at(&m, r, r % PROM_DIRS, prom_size_of_bin(s), proto->radius),
-                    (float)m.accuracy[r].bins[r % PROM_DIRS][s] / 255.0f, 1e-4f);
+                    prom_accuracy_of_byte(m.accuracy[r].bins[r % PROM_DIRS][s]), 1e-4f);
             float last = accuracy_at(&m, r, 0, 2.0f, proto->radius);
             for (float size = 2.0f; size < 3000.0f; size *= 1.002f) {
                 float a = accuracy_at(&m, r, 0, size, proto->radius);
-                assert_true(a >= 0.0f && a <= 1.0f);
+                assert_true(a >= 1.0f - PROM_ERROR_MAX && a <= 1.0f);
                 // Half an octave at full swing is 1; a step here is a 173th of that.
                 assert_true(fabsf(a - last) < 0.008f);
                 last = a;
@@ -177,6 +192,7 @@ static void split_keeps_the_pixels_of_a_cluster(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bytes_never_promise_more),
         cmocka_unit_test(accuracy_of_full_geometry_is_1),
         cmocka_unit_test(accuracy_meets_its_table_and_is_continuous),
         cmocka_unit_test(accuracy_falls_beyond_the_measured_sizes),

@@ -3,6 +3,7 @@
 //
 // What `promenade info` says of a model: its view cells, how it was measured, its tables, and
 // the sheet of an object (which is skipped where there is no GL).
+#include "benefit/accuracy.h"
 #include "benefit/colour_map.h"
 #include "builder/image_io.h"
 #include "container_fixture.h"
@@ -140,7 +141,7 @@ static void check_row(const prom_model *m, const row *r,
     assert_int_equal(prom_bin_of_direction(r->direction), r->dir);
     uint8_t accuracy = s < PROM_SIZES ? m->accuracy[r->rep].bins[r->dir][s]
                                       : m->accuracy[r->rep].large[r->dir][s - PROM_SIZES];
-    assert_int_equal(lroundf(255 * r->accuracy), accuracy);
+    assert_true(fabsf(r->accuracy - prom_accuracy_of_byte(accuracy)) < 1e-4f);
     assert_true(fabsf(r->coverage - m->coverage[r->prototype][r->dir] / 65535.0f) < 1e-4f);
 }
 

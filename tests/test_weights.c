@@ -278,7 +278,7 @@ static void benefit_is_pixels_times_weight_times_accuracy(void **state)
                 weighted += e->weight != 1.0f;
             }
             assert_null(prom_cut_check(&b.model, &b.view, cut));
-            assert_true(fabs(benefit - cut->benefit) <= 1e-4 * benefit + 1e-6);
+            assert_true(fabs(benefit - cut->benefit) <= 1e-4 * worth + 1e-6);
             assert_true(fabs(worth - benefit - cut->loss) <= 1e-4 * worth + 1e-6);
         }
         prom_free(semantics);
@@ -443,7 +443,7 @@ static void hysteresis_is_no_benefit(void **state)
             worth += (double)e->visible_px;
             benefit += (double)(e->visible_px * e->accuracy);
         }
-        assert_true(fabs(benefit - cut->benefit) <= 1e-4 * benefit + 1e-6);
+        assert_true(fabs(benefit - cut->benefit) <= 1e-4 * worth + 1e-6);
         assert_true(fabs(worth - benefit - cut->loss) <= 1e-4 * worth + 1e-6);
         prom_last_cut_finish(&last);
         bench_finish(&b);

@@ -242,7 +242,7 @@ bool prom_eval_open_visible(void *user, uint32_t node)
     const prom_eval *eval = user;
     const prom_eval_node *n = &eval->nodes[node];
     if (n->hidden) return false;
-    float best = 0.0f;
+    float best = -INFINITY;
     for (uint32_t i = 0; i < n->option_count; i++)
         best = fmaxf(best, eval->options[n->first_option + i].benefit);
     float loss = n->size_px < TINY_SIZE_PX ? TINY_LOSS_PX : SMALL_LOSS_PX;
