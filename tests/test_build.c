@@ -157,6 +157,48 @@ static void only_what_depends_on_a_change_is_done_again(void **state)
     assert_true(content_of("units.prom") == changed);
 }
 
+// Views that were kept serve other metrics, and change nothing in what comes of them.
+static void kept_views_serve_other_metrics(void **state)
+{
+    (void)state;
+    if (!have_gl()) skip();
+    prom_build_options options = {.objects = {.min_triangles = 12}};
+    unlink("units.prom.work");
+    write_street("units_scene.obj", 30, -1, 0);
+    build_street(&options);
+    const uint64_t content = content_of("units.prom");
+    options.measure.metric = "rmse";
+    prom_build_report drawn = build_street(&options);
+    const uint64_t rmse = content_of("units.prom");
+    assert_int_equal(drawn.views_taken, 0);
+    assert_true(rmse != content);
+
+    options.measure.metric = NULL;
+    options.keep_views = true;
+    options.from = PROM_BUILD_FROM_LEAVES;
+    prom_build_report kept = build_street(&options);
+    assert_int_equal(kept.views_taken, 0);
+    assert_true(kept.work_bytes > drawn.work_bytes);
+    assert_true(content_of("units.prom") == content);
+
+    options.from = PROM_BUILD_FROM_NOWHERE;
+    options.measure.metric = "rmse";
+    prom_build_report taken = build_street(&options);
+    assert_int_equal(taken.views_taken, taken.prototypes);
+    assert_true(content_of("units.prom") == rmse);
+    // It does not use the pixels per degree: nothing is measured again, the views stay.
+    options.measure.ppd = 60;
+    prom_build_report known = build_street(&options);
+    assert_int_equal(known.units_taken, known.units);
+    options.measure.metric = "flip";
+    assert_int_equal(build_street(&options).views_taken, taken.prototypes);
+    // A build that neither looks at them nor is to keep them drops them.
+    options.keep_views = false;
+    assert_int_equal(build_street(&options).units_taken, known.units);
+    options.measure.metric = "edge-blur";
+    assert_int_equal(build_street(&options).views_taken, 0);
+}
+
 static void bad_input_leaves_nothing(void **state)
 {
     (void)state;
@@ -183,6 +225,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(same_input_gives_same_content),
         cmocka_unit_test(only_what_depends_on_a_change_is_done_again),
+        cmocka_unit_test(kept_views_serve_other_metrics),
         cmocka_unit_test(tables_of_a_built_model_hold),
         cmocka_unit_test(bad_input_leaves_nothing),
     };

@@ -4,9 +4,10 @@
 // Usage: bench_measure spheres COUNT FILE.glb   writes that many different bumpy spheres of
 //                                               5,000 triangles
 //        bench_measure build SCENE MODEL [METRIC]  builds a model
-//        bench_measure grids SCENE MODEL [METRIC]  builds it with pictures compared in all
-//                                               directions, then as always, from the same
-//                                               pictures, and tells how far the tables differ
+//        bench_measure grids SCENE MODEL [METRIC]  builds it, then again with pictures
+//                                               compared in all directions, and tells how far
+//                                               the tables differ
+#include "benefit/accuracy.h"
 #include "builder/pipeline.h"
 #include "metaobj/base/clock.h"
 #include "metaobj/container.h"
@@ -192,29 +193,31 @@ static void build(const char *scene, const char *path, const prom_build_options 
 
 static int by_value(const void *a, const void *b)
 {
-    return *(const uint8_t *)a - *(const uint8_t *)b;
+    const float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
 }
 
 static void print_differences(const prom_model *all, const prom_model *some, uint32_t kind)
 {
-    PROM_ARRAY(uint8_t) differences = {0};
+    PROM_ARRAY(float) differences = {0};
     double sum = 0, bias = 0;
     for (uint32_t r = 0; r < all->rep_count; r++)
         for (uint32_t d = PROM_DIRS_COARSE; d < PROM_DIRS && all->reps[r].kind == kind; d++)
             for (uint32_t s = 0; s < PROM_SIZES; s++) {
-                int off = some->accuracy[r].bins[d][s] - all->accuracy[r].bins[d][s];
-                prom_array_push(&differences, (uint8_t)abs(off));
-                sum += abs(off);
-                bias += off;
+                float off = prom_accuracy_of_byte(some->accuracy[r].bins[d][s]) -
+                            prom_accuracy_of_byte(all->accuracy[r].bins[d][s]);
+                prom_array_push(&differences, fabsf(off));
+                sum += (double)fabsf(off);
+                bias += (double)off;
             }
     size_t n = differences.count;
     if (n) {
-        qsort(differences.data, n, 1, by_value);
+        qsort(differences.data, n, sizeof *differences.data, by_value);
         printf("  %-13s %8zu accuracies of fine directions: off by %.4f on average (bias "
                "%+.4f), p99 %.3f, p99.9 %.3f, most %.3f\n",
-               prom_rep_kind_name(kind), n, sum / (double)n / 255, bias / (double)n / 255,
-               differences.data[n * 99 / 100] / 255.0, differences.data[n * 999 / 1000] / 255.0,
-               differences.data[n - 1] / 255.0);
+               prom_rep_kind_name(kind), n, sum / (double)n, bias / (double)n,
+               (double)differences.data[n * 99 / 100], (double)differences.data[n * 999 / 1000],
+               (double)differences.data[n - 1]);
     }
     prom_array_finish(&differences);
 }
@@ -222,10 +225,10 @@ static void print_differences(const prom_model *all, const prom_model *some, uin
 static void compare_grids(const char *scene, const char *path, prom_build_options *options)
 {
     prom_model all = {0}, some = {0};
-    options->keep_views = options->measure.everywhere = true;
-    build(scene, path, options, &all);
-    options->measure.everywhere = false;
+    options->keep_views = true;
     build(scene, path, options, &some);
+    options->measure.everywhere = true;
+    build(scene, path, options, &all);
     if (all.rep_count == some.rep_count)
         for (uint32_t kind = 0; kind < PROM_REP_KIND_COUNT; kind++)
             print_differences(&all, &some, kind);
