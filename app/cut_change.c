@@ -1,5 +1,7 @@
 #include "app/cut_change.h"
 
+#include <math.h>
+
 void prom_cut_copy(const prom_cut *from, prom_cut *to)
 {
     size_t count = from->entries.count;
@@ -42,7 +44,7 @@ uint32_t prom_cut_best_option(const prom_eval *eval, uint32_t node)
 {
     const prom_eval_node *n = &eval->nodes[node];
     uint32_t best = PROM_NONE;
-    float most = -1.0f;
+    float most = -INFINITY;
     for (uint32_t o = n->first_option; o < n->first_option + n->option_count; o++) {
         float accuracy = prom_eval_accuracy(eval, node, eval->options[o].rep);
         if (accuracy > most) best = o, most = accuracy;
