@@ -17,10 +17,10 @@
 #define VETO_PERCENTILE 0.99f
 #define VETO_ERROR 0.8f
 
-// Coarse directions disagree about one between them if their accuracies differ by more than
-// this (of 255) at any size, or their coverages by this part of the larger one. Measured: see
-// docs/MEASURED.md.
-#define DISAGREE_ACCURACY 8
+// Coarse directions disagree about one between them if their errors differ at any size by more
+// than this and this part of the worst, or their coverages by this part of the larger one.
+#define DISAGREE_ERROR 0.03f
+#define DISAGREE_SHARE 0.1f
 #define DISAGREE_COVERAGE 0.25
 
 static uint32_t radius_of(const char *metric, float ppd)
@@ -184,11 +184,13 @@ static bool accuracies_disagree(const prom_accuracy_row *row, const uint32_t *ar
     for (uint32_t s = 0; s < PROM_SIZES; s++) {
         uint8_t least = 255, most = 0;
         for (uint32_t k = 0; k < count; k++) {
-            uint8_t accuracy = row->bins[around[k]][s];
-            if (accuracy < least) least = accuracy;
-            if (accuracy > most) most = accuracy;
+            uint8_t byte = row->bins[around[k]][s];
+            if (byte < least) least = byte;
+            if (byte > most) most = byte;
         }
-        if (most - least > DISAGREE_ACCURACY) return true;
+        float worst = 1.0f - prom_accuracy_of_byte(least);
+        float best = 1.0f - prom_accuracy_of_byte(most);
+        if (worst - best > DISAGREE_ERROR + DISAGREE_SHARE * worst) return true;
     }
     return false;
 }

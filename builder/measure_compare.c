@@ -14,16 +14,15 @@
 // What a thread works in.
 struct measure_scratch {
     prom_metric *metric;
-    float (*patches)[4];     // the truth's, of all sizes
-    float (*whole)[4];       // a representation's at full size,
-    float (*small)[4];       // and at another
-    float (*between)[4];     // while it is reduced
-    prom_rgba *rgba;         // over a background
-    float *truth;            // features of the truth, of all sizes and backgrounds,
-    float *other;            // and of a representation
-    float *map;              // of errors
-    prom_patch sizes[SIZES]; // in patches
-    size_t features[SIZES];  // in truth, of the first background
+    float (*patches)[4];       // the truth's, of all sizes
+    float (*other_patches)[4]; // a representation's
+    float (*between)[4];       // while it is reduced
+    prom_rgba *rgba;           // over a background
+    float *truth;              // features of the truth, of all sizes and backgrounds,
+    float *other;              // and of a representation
+    float *map;                // of errors
+    prom_patch sizes[SIZES], other_sizes[SIZES]; // in patches
+    size_t features[SIZES];                      // in truth, of the first background
 };
 
 // ---- memory
@@ -67,8 +66,7 @@ measure_scratch *measure_scratch_create(const prom_measure *m)
     s->metric = prom_metric_create(m->how.metric, m->how.ppd, side, window, 1);
     const room r = room_for(m, s->metric, PROM_DIRS), small = room_for(m, s->metric, 0);
     s->patches = prom_alloc(r.patches, sizeof *s->patches);
-    s->whole = prom_alloc(r.view, sizeof *s->whole);
-    s->small = prom_alloc(r.view, sizeof *s->small);
+    s->other_patches = prom_alloc(r.patches, sizeof *s->other_patches);
     s->between = prom_alloc(r.view, sizeof *s->between);
     s->rgba = prom_alloc(window, sizeof *s->rgba);
     // With a wide metric the windows of many small pictures are larger than those of two.
@@ -82,8 +80,7 @@ void measure_scratch_destroy(measure_scratch *s)
 {
     prom_metric_destroy(s->metric);
     prom_free(s->patches);
-    prom_free(s->whole);
-    prom_free(s->small);
+    prom_free(s->other_patches);
     prom_free(s->between);
     prom_free(s->rgba);
     prom_free(s->truth);
@@ -106,29 +103,42 @@ static void take_features(const prom_measure *m, const prom_patch *patch, float 
     prom_metric_features(s->metric, &picture, features);
 }
 
-// A patch of what is seen at a size, in whole or reduced from it.
-static const prom_patch *at_size(const prom_patch *whole, uint32_t view, uint32_t size,
-                                 measure_scratch *s, prom_patch *reduced)
+// What a size is reduced from: the one an octave above, where there is one, since halving again
+// averages the same pixels; else the largest.
+static uint32_t source_of(uint32_t size, uint32_t largest)
 {
-    const float step = (float)prom_view_px(view) / prom_size_of_bin(size);
-    if (step <= 1.0f) return whole;
-    prom_patch_reduce(whole, step, s->between, reduced);
-    return reduced;
+    const float octave = 2.0f * prom_size_of_bin(size);
+    for (uint32_t source = size + 1; source < largest; source++)
+        if (fabsf(prom_size_of_bin(source) / octave - 1.0f) < 1e-3f) return source;
+    return largest;
+}
+
+// A part of a view at all sizes that are made of it.
+static void take_sizes(measure_scratch *s, const prom_views *views, uint32_t view,
+                       prom_part part, float (*pixels)[4], prom_patch *patches)
+{
+    const size_range sizes = sizes_of_view(view);
+    const uint32_t largest = sizes.first + sizes.count - 1;
+    patches[largest].pixels = pixels;
+    prom_patch_take(views, view, part, &patches[largest]);
+    for (uint32_t size = largest; size-- > sizes.first;) {
+        const uint32_t source = source_of(size, largest);
+        const float step =
+            source == largest ? (float)prom_view_px(view) / prom_size_of_bin(size) : 2.0f;
+        pixels += prom_part_pixels(&patches[size + 1].part);
+        patches[size].pixels = pixels;
+        prom_patch_reduce(&patches[source], step, s->between, &patches[size]);
+    }
 }
 
 void measure_take_truth(const prom_measure *m, measure_scratch *s, const prom_views *views,
                         uint32_t view, prom_part part)
 {
     const size_range sizes = sizes_of_view(view);
-    const uint32_t largest = sizes.first + sizes.count - 1;
-    float(*pixels)[4] = s->patches, *features = s->truth;
-    s->sizes[largest].pixels = pixels;
-    prom_patch_take(views, view, part, &s->sizes[largest]);
-    for (uint32_t i = 0; i < sizes.count; i++) {
-        const uint32_t size = largest - i;
-        s->sizes[size].pixels = pixels;
-        const prom_patch *patch = at_size(&s->sizes[largest], view, size, s, &s->sizes[size]);
-        pixels += prom_part_pixels(&patch->part);
+    float *features = s->truth;
+    take_sizes(s, views, view, part, s->patches, s->sizes);
+    for (uint32_t size = sizes.first; size < sizes.first + sizes.count; size++) {
+        const prom_patch *patch = &s->sizes[size];
         s->features[size] = (size_t)(features - s->truth);
         for (int b = 0; b < BACKGROUNDS; b++) {
             take_features(m, patch, m->how.background[b], s, features);
@@ -209,10 +219,7 @@ void measure_compare(const prom_measure *m, measure_scratch *s, const prom_views
                      uint32_t view, prom_part part, uint8_t *accuracies)
 {
     const size_range sizes = sizes_of_view(view);
-    prom_patch whole = {.pixels = s->whole}, small = {.pixels = s->small};
-    prom_patch_take(views, view, part, &whole);
-    for (uint32_t i = 0; i < sizes.count; i++) {
-        const prom_patch *patch = at_size(&whole, view, sizes.first + i, s, &small);
-        accuracies[i] = compare_size(m, sizes.first + i, patch, s);
-    }
+    take_sizes(s, views, view, part, s->other_patches, s->other_sizes);
+    for (uint32_t i = 0; i < sizes.count; i++)
+        accuracies[i] = compare_size(m, sizes.first + i, &s->other_sizes[sizes.first + i], s);
 }
