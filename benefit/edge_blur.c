@@ -11,18 +11,15 @@
 // brightness) costs a quarter of the pixel, about what FLIP says of it, and a contrast of 0.4,
 // an object that is missing, costs all of it. EDGE_GAIN: by taste; lost texture of contrast 0.3
 // costs about a third.
-#include "benefit/edge_blur.h"
-
 #include "benefit/grey.h"
 #include "benefit/metric_private.h"
 
-#include <assert.h>
 #include <math.h>
 
 #define EDGE_GAIN 1.0f
 #define GREY_GAIN 2.5f
 
-enum { RADIUS = PROM_EDGE_BLUR_RADIUS, BLUR = 2, FEATURES = 2 };
+enum { RADIUS = 3, BLUR = 2, FEATURES = 2 };
 
 // Working memory for a band: luma with a border of RADIUS, edges with one of BLUR, and a row of
 // either.
@@ -130,46 +127,3 @@ const prom_metric_kind prom_metric_edge_blur = {
     .features = features,
     .compare = compare,
 };
-
-// ---- on greys
-
-size_t prom_edge_blur_scratch(uint32_t width, uint32_t height)
-{
-    return 2 * FEATURES * (size_t)width * height + scratch_floats(width);
-}
-
-void prom_edge_blur_features(const float *grey, uint32_t width, uint32_t height, float *planes,
-                             float *scratch)
-{
-    assert(width > 0 && height > 0);
-    const prom_picture picture = {width, height, 1, true, grey, 0};
-    for (uint32_t first = 0; first < height; first += PROM_BAND_ROWS) {
-        uint32_t last = height - first < PROM_BAND_ROWS ? height : first + PROM_BAND_ROWS;
-        features_of_band(&(features_job){&picture, planes}, first, last, scratch);
-    }
-}
-
-void prom_edge_blur_error(const float *features_a, const float *features_b, uint32_t width,
-                          uint32_t height, float *error)
-{
-    compare_job job = {features_a, features_b, width, (size_t)width * height, error};
-    compare_band(&job, 0, height, NULL);
-}
-
-void prom_edge_blur(const float *a, const float *b, uint32_t width, uint32_t height,
-                    float *error, float *scratch)
-{
-    const size_t plane = (size_t)width * height;
-    float *features_a = scratch, *features_b = scratch + 2 * plane;
-    float *rest = scratch + 4 * plane;
-    prom_edge_blur_features(a, width, height, features_a, rest);
-    prom_edge_blur_features(b, width, height, features_b, rest);
-    prom_edge_blur_error(features_a, features_b, width, height, error);
-}
-
-void prom_metric_grey(const uint8_t *rgba, size_t pixels, float *grey)
-{
-    assert(pixels <= UINT32_MAX);
-    const prom_picture picture = {(uint32_t)pixels, 1, 4, false, rgba, 0};
-    prom_grey_row(&picture, 0, grey);
-}

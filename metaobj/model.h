@@ -114,7 +114,7 @@ typedef struct prom_accuracy_row {
 #define PROM_PPD_MIN 1.0f // pixels per degree that filters are made for
 #define PROM_PPD_MAX 1000.0f
 typedef struct prom_measured {
-    char metric[PROM_METRIC_NAME_BYTES]; // benefit/edge_blur.h
+    char metric[PROM_METRIC_NAME_BYTES]; // benefit/metric.h
     float ppd;                           // pixels per degree of the views
     float background[2];                 // linear luminance
     float veto_percentile, veto_error;   // of the footprint's pixels; above it accuracy is 0
