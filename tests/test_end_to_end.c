@@ -213,9 +213,10 @@ static void check_run(json_t *one, const char *selector)
     assert_true(number(one, "quality.frames") == 3);
     double flip = number(one, "quality.mean"), worst = number(one, "quality.p95");
     assert_true(flip >= 0 && flip <= worst && worst < 1);
-    const char *const shares[] = {"quality.loss", "quality.hidden_cost",
-                                  "quality.hidden_nodes"};
-    for (int i = 0; i < 3; i++)
+    // Of a pixel, more can be lost than it has (benefit/accuracy.h).
+    assert_true(number(one, "quality.loss") >= 0 && number(one, "quality.loss") <= 4);
+    const char *const shares[] = {"quality.hidden_cost", "quality.hidden_nodes"};
+    for (int i = 0; i < 2; i++)
         assert_true(number(one, shares[i]) >= 0 && number(one, shares[i]) < 1);
     assert_true(number(one, "cut_nodes.mean") >= 1);
     assert_true(number(one, "memory_mb.end") > 0);
