@@ -183,7 +183,7 @@ static void draw_head(sheet *s)
           PROM_SHEET_TOLERANCE);
     if (m->measured.veto_error < 1)
         print(s, MARGIN, y + LINE_HEIGHT, dim,
-              "veto: more than %.3g %% of the pixels err by more than %.3g",
+              "veto: more than %.3g %% of it lies within parts that err by more than %.3g",
               100 - 100 * (double)m->measured.veto_percentile, (double)m->measured.veto_error);
 }
 
@@ -240,7 +240,9 @@ static void draw_accuracy(sheet *s, uint32_t x, uint32_t y, uint32_t rep, uint32
     }
     x = print(s, x, y, shown ? ink : dim, "%.2f", stored);
     if (!same_metric(s) || fabs(stored - here) <= PROM_SHEET_TOLERANCE) return;
-    print(s, x, y, warning, stored > 0 || !vetoed ? " here %.2f" : " veto, else %.2f", here);
+    print(s, x, y, warning,
+          stored > 1 - (double)PROM_ERROR_MAX || !vetoed ? " here %.2f" : " veto, else %.2f",
+          here);
 }
 
 static void draw_cell(sheet *s, uint32_t rep, uint32_t row, uint32_t column)

@@ -129,39 +129,13 @@ void prom_view_error_set_truth(prom_view_error *e, const prom_views *views, uint
         look(e, &e->truth, e->how.background[b], b == 0 ? rgb : NULL, e->truth_features[b]);
 }
 
-static float larger_coverage(const prom_view_error *e, size_t i)
-{
-    return fmaxf(e->truth.pixels[i][3], e->other.pixels[i][3]);
-}
-
-static double mean_error(const prom_view_error *e)
-{
-    bool squares = prom_metric_class_of(e->metric)->squares;
-    double area = 0, sum = 0;
-    for (size_t i = 0; i < (size_t)e->side * e->side; i++) area += larger_coverage(e, i);
-    for (size_t i = 0; i < (size_t)e->wide * e->wide; i++)
-        sum += squares ? (double)e->map[i] * e->map[i] : e->map[i];
-    // Less than a pixel covered: its error is judged as if it were one.
-    double mean = sum / fmax(area, 1);
-    return squares ? sqrt(mean) : mean;
-}
-
-// As in the builder, but for any size.
-static bool is_vetoed(const prom_view_error *e)
-{
-    size_t footprint = 0, wrong = 0;
-    for (uint32_t y = 0; y < e->side; y++)
-        for (uint32_t x = 0; x < e->side; x++) {
-            if (larger_coverage(e, (size_t)y * e->side + x) < 0.5f) continue;
-            footprint++;
-            wrong += e->map[inner_row(e, y) + x] > e->how.veto_error;
-        }
-    return (double)wrong > (1 - (double)e->how.veto_percentile) * (double)footprint;
-}
-
 double prom_view_error_run(prom_view_error *e, const prom_views *views, uint32_t dir,
                            uint8_t (*rgb)[3], float *map, bool *vetoed)
 {
+    const bool squares = prom_metric_class_of(e->metric)->squares;
+    const size_t pixels = (size_t)e->wide * e->wide;
+    const double area = prom_patch_area(&e->truth);
+    const float size_px = (float)e->view_px / e->step;
     double error = 0;
     *vetoed = false;
     take_picture(e, views, dir, &e->other);
@@ -171,8 +145,8 @@ double prom_view_error_run(prom_view_error *e, const prom_views *views, uint32_t
                             e->map);
         for (uint32_t y = 0; b == 0 && y < e->side; y++)
             memcpy(map + (size_t)y * e->side, e->map + inner_row(e, y), e->side * sizeof *map);
-        error += mean_error(e);
-        *vetoed |= is_vetoed(e);
+        error += prom_window_error(e->map, pixels, area, squares);
+        *vetoed |= prom_window_vetoed(&e->how, size_px, area, e->map, e->wide, e->wide);
     }
-    return fmax(1 - error / BACKGROUNDS, 0);
+    return 1 - error / BACKGROUNDS;
 }

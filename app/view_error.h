@@ -24,11 +24,8 @@ const char *prom_view_error_metric(const prom_view_error *error);
 void prom_view_error_set_truth(prom_view_error *error, const prom_views *views, uint32_t dir,
                                uint8_t (*rgb)[3]);
 // Compares another look from the same direction: its picture, the error of each of its pixels,
-// and returned, the accuracy: 1 - error summed over the padded window / area covered in either
-// picture (or for a metric that squares, the root of the mean square), the mean of both
-// backgrounds.
-// *vetoed: whether so many pixels of that area err so much that accuracy would be 0 where the
-// size is large enough to say so.
+// and returned, the accuracy (benefit/accuracy.h), the mean of both backgrounds.
+// *vetoed: whether a part of it is so wrong that the accuracy counts as 0 of 255.
 double prom_view_error_run(prom_view_error *error, const prom_views *views, uint32_t dir,
                            uint8_t (*rgb)[3], float *map, bool *vetoed);
 

@@ -8,9 +8,6 @@
 #define BACKGROUNDS 2
 #define SIZES (PROM_SIZES + PROM_SIZES_LARGE)
 
-// In smaller pictures there are too few pixels for a veto.
-#define VETO_SIZE_PX 32.0f
-
 // What a thread works in.
 struct measure_scratch {
     prom_metric *metric;
@@ -148,50 +145,6 @@ void measure_take_truth(const prom_measure *m, measure_scratch *s, const prom_vi
     }
 }
 
-static double sum_of(const float *values, size_t count)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < count; i++) sum += (double)values[i];
-    return sum;
-}
-
-static double sum_of_squares(const float *values, size_t count)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < count; i++) sum += (double)(values[i] * values[i]);
-    return sum;
-}
-
-// Whether more of the footprint than may be lies in the middle of something wrong: pixels that
-// end a square of wrong ones which no edge of an outline fills. The map becomes the sides of
-// the largest such squares.
-static bool is_vetoed(const prom_measured *how, float size_px, double area, float *map,
-                      uint32_t width, uint32_t height)
-{
-    const float side = 1.0f + 2.0f * roundf(size_px / VETO_SIZE_PX);
-    uint32_t ends = 0;
-    for (uint32_t y = 0; y < height; y++) {
-        float *row = map + (size_t)y * width, *above = row - width;
-        for (uint32_t x = 0; x < width; x++) {
-            bool wrong = row[x] > how->veto_error;
-            row[x] = 0.0f;
-            if (!wrong) continue;
-            bool inner = x > 0 && y > 0;
-            row[x] = 1.0f + (inner ? fminf(fminf(row[x - 1], above[x]), above[x - 1]) : 0.0f);
-            ends += row[x] >= side;
-        }
-    }
-    return ends > (1.0 - (double)how->veto_percentile) * area;
-}
-
-static double covered_area(const prom_patch *patch)
-{
-    double area = 0.0;
-    for (size_t i = 0; i < prom_part_pixels(&patch->part); i++)
-        area += (double)patch->pixels[i][3];
-    return area;
-}
-
 // Accuracy of a patch against the truth's of that size.
 static uint8_t compare_size(const prom_measure *m, uint32_t size, const prom_patch *patch,
                             measure_scratch *s)
@@ -200,17 +153,14 @@ static uint8_t compare_size(const prom_measure *m, uint32_t size, const prom_pat
     const uint32_t high = patch->part.height + 2 * m->pad;
     const size_t window = (size_t)wide * high;
     const float *features = s->truth + s->features[size], size_px = prom_size_of_bin(size);
-    // Less than a pixel is judged as if it were one.
-    const double area = fmax(covered_area(&s->sizes[size]), 1.0);
+    const double area = prom_patch_area(&s->sizes[size]);
     double error = 0.0;
     for (int b = 0; b < BACKGROUNDS; b++) {
         take_features(m, patch, m->how.background[b], s, s->other);
         prom_metric_compare(s->metric, features, s->other, wide, high, s->map);
         features += prom_metric_feature_floats(s->metric, wide, high);
-        error += m->metric->squares ? sqrt(sum_of_squares(s->map, window) / area)
-                                    : sum_of(s->map, window) / area;
-        if (size_px >= VETO_SIZE_PX && is_vetoed(&m->how, size_px, area, s->map, wide, high))
-            return 0;
+        error += prom_window_error(s->map, window, area, m->metric->squares);
+        if (prom_window_vetoed(&m->how, size_px, area, s->map, wide, high)) return 0;
     }
     return prom_byte_of_accuracy(1.0 - error / BACKGROUNDS);
 }

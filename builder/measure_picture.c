@@ -157,3 +157,50 @@ void prom_patch_compose(const prom_patch *patch, const prom_encoder *encoder, fl
         }
     }
 }
+
+// ---- errors
+
+double prom_patch_area(const prom_patch *patch)
+{
+    double area = 0.0;
+    for (size_t i = 0; i < prom_part_pixels(&patch->part); i++)
+        area += (double)patch->pixels[i][3];
+    return fmax(area, 1.0);
+}
+
+double prom_window_error(const float *map, size_t count, double area, bool squares)
+{
+    double sum = 0.0;
+    if (!squares) {
+        for (size_t i = 0; i < count; i++) sum += (double)map[i];
+        return sum / area;
+    }
+    for (size_t i = 0; i < count; i++) sum += (double)(map[i] * map[i]);
+    return sqrt(sum / area);
+}
+
+// In smaller pictures there are too few pixels for a veto.
+#define VETO_SIZE_PX 32.0f
+
+// Pixels count that end a square of wrong ones which no edge of an outline fills. The map
+// becomes the sides of the largest such squares.
+bool prom_window_vetoed(const prom_measured *how, float size_px, double area, float *map,
+                        uint32_t width, uint32_t height)
+{
+    if (size_px < VETO_SIZE_PX) return false;
+    const float side = 1.0f + 2.0f * roundf(size_px / VETO_SIZE_PX);
+    uint32_t ends = 0;
+    for (uint32_t y = 0; y < height; y++) {
+        float *row = map + (size_t)y * width;
+        const float *above = y ? row - width : NULL;
+        for (uint32_t x = 0; x < width; x++) {
+            bool wrong = row[x] > how->veto_error;
+            row[x] = 0.0f;
+            if (!wrong) continue;
+            bool inner = x > 0 && y > 0;
+            row[x] = 1.0f + (inner ? fminf(fminf(row[x - 1], above[x]), above[x - 1]) : 0.0f);
+            ends += row[x] >= side;
+        }
+    }
+    return ends > (1.0 - (double)how->veto_percentile) * area;
+}

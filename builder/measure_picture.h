@@ -4,6 +4,7 @@
 #define PROM_BUILDER_MEASURE_PICTURE_H
 
 #include "builder/views.h"
+#include "metaobj/model.h"
 
 // What a part of a picture shows: linear colour times coverage, and coverage.
 typedef struct prom_patch {
@@ -40,5 +41,16 @@ void prom_encoder_init(prom_encoder *encoder);
 // part.width + 2 * pad encoded pixels.
 void prom_patch_compose(const prom_patch *patch, const prom_encoder *encoder, float background,
                         uint32_t pad, uint8_t (*rgba)[4]);
+
+// Pixels that a patch covers, at least 1: what covers less is judged as if it were one.
+double prom_patch_area(const prom_patch *patch);
+// The error of a padded window: the sum of the map over the area, or where the metric squares,
+// the root of the mean square.
+double prom_window_error(const float *map, size_t count, double area, bool squares);
+// Whether a part of the object is missing or something else is there: more than
+// 1 - how->veto_percentile of the area lies within squares of errors above how->veto_error that
+// are wider than an outline. Never in small pictures. The map is used up.
+bool prom_window_vetoed(const prom_measured *how, float size_px, double area, float *map,
+                        uint32_t width, uint32_t height);
 
 #endif
