@@ -17,7 +17,7 @@
 
 #include <cmocka.h>
 
-#define BUILD "build street.obj -o x.prom --min-object-triangles 12 "
+#define BUILD "build street.obj -o x.prom --min-object-triangles 12 --metric constant "
 #define CELLS BUILD "--view-cells a.path,b.path --view-cell-px 128 "
 
 static bool have_gl;
