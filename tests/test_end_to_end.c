@@ -20,9 +20,9 @@
 #define SMALL " --resolution 160,90 --profile p.json --quiet"
 // Comparing every view takes minutes under the sanitizers; the metrics have tests of their own.
 #ifdef PROM_SANITIZE
-#define BUILD_CITY "build city.glb -o city.prom --quiet --metric constant"
+#define QUICK " --quiet --metric constant"
 #else
-#define BUILD_CITY "build city.glb -o city.prom --quiet"
+#define QUICK " --quiet"
 #endif
 
 static program_run run;
@@ -53,7 +53,7 @@ static int make_model(void **state)
     assert_int_equal(run.code, 0);
     expect("scene city --seed 7 --size 1 --detail 1 --styles 2 -o city.glb --path city.path",
            0);
-    expect(BUILD_CITY, 0);
+    expect("build city.glb -o city.prom" QUICK, 0);
     return 0;
 }
 
@@ -408,8 +408,7 @@ static void the_same_build_has_the_same_content(void **state)
     char first[17] = "";
     write_bowls("bowls.obj");
     for (int i = 0; i < 2; i++) {
-        expect(i ? "build bowls.obj -o again.prom --quiet"
-                 : "build bowls.obj -o b.prom --quiet",
+        expect(i ? "build bowls.obj -o again.prom" QUICK : "build bowls.obj -o b.prom" QUICK,
                0);
         expect(i ? "info again.prom --json" : "info b.prom --json", 0);
         json_t *info = json_loads(run.out, 0, NULL);
@@ -427,7 +426,7 @@ static void the_strict_octree_builds(void **state)
     (void)state;
     NEED_DEVICE();
     write_bowls("bowls.obj");
-    expect("build bowls.obj -o strict.prom --octree strict --divisions 4,1,4 --quiet", 0);
+    expect("build bowls.obj -o strict.prom --octree strict --divisions 4,1,4" QUICK, 0);
     expect("bench strict.prom --frames 3 --warmup 0 --selector meta" SMALL, 0);
 }
 
@@ -439,7 +438,7 @@ static void every_visibility_shows_everything(void **state)
            "--visibility cells" SMALL,
            0);
     assert_non_null(strstr(run.err, "no view cells"));
-    expect(BUILD_CITY " --view-cells city.path --view-cell-px 64", 0);
+    expect("build city.glb -o city.prom" QUICK " --view-cells city.path --view-cell-px 64", 0);
     const char *const modes[] = {"none", "frame", "cells", "both"};
     for (int i = 0; i < 4; i++) {
         char arguments[256];
