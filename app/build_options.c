@@ -31,6 +31,7 @@ enum {
     KEY_FROM,
     KEY_DROP_WORK,
     KEY_KEEP_VIEWS,
+    KEY_VETO,
     KEY_VIEW_CELLS,
     KEY_VIEW_CELL_SIZE,
     KEY_VIEW_CELL_PX,
@@ -95,6 +96,11 @@ static const struct argp_option options[] = {
      "view-cells",
      7},
     {"force", KEY_FORCE, NULL, 0, "Take nothing from earlier builds", 7},
+    {"veto", KEY_VETO, NULL, 0,
+     "Refuse a representation from where a part of the object is missing, however small the "
+     "mean "
+     "error: it is then only drawn where nothing dearer can be paid for",
+     3},
     {"keep-views", KEY_KEEP_VIEWS, NULL, 0,
      "Keep the pictures that are drawn in X.prom.work too: a build with another --metric or "
      "--ppd need not draw them",
@@ -170,6 +176,9 @@ static error_t parse_work(prom_build_command *o, int key, char *text, struct arg
         break;
     case KEY_FROM:
         parse_from(&o->build, text, state);
+        break;
+    case KEY_VETO:
+        o->build.measure.veto = true;
         break;
     case KEY_KEEP_VIEWS:
         o->build.keep_views = true;

@@ -40,7 +40,7 @@ prom_measure *prom_measure_create(const prom_measure_options *options, float mea
         .background = {mean_luminance,
                        prom_linear_to_srgb(mean_luminance) > 0.5f ? 0.02f : 0.8f},
         .veto_percentile = VETO_PERCENTILE,
-        .veto_error = VETO_ERROR};
+        .veto_error = options->veto ? VETO_ERROR : 1.0f};
     snprintf(m->how.metric, sizeof m->how.metric, "%s", name);
     m->metric = prom_metric_named(name);
     m->everywhere = options->everywhere;

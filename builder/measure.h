@@ -29,6 +29,7 @@ typedef struct prom_measure_options {
         *metric;     // in benefit/metric.h, or PROM_METRIC_CONSTANT; NULL: PROM_MEASURE_METRIC
     float ppd;       // of the views; 0: PROM_MEASURE_PPD
     bool everywhere; // compare in all directions
+    bool veto;       // what lacks a part has accuracy 0 of 255
 } prom_measure_options;
 
 typedef struct prom_measure prom_measure;

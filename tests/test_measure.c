@@ -203,7 +203,10 @@ static void what_lacks_a_part_is_vetoed(void **state)
     paint_views(&truth, true, paint_disc, &discs[0]);
     paint_views(&views, true, paint_disc, &discs[1]);
     result.views = &views;
-    const prom_measure_options options = {0};
+    prom_measure_options options = {0};
+    measure_all(&options, &truth, &other, 1);
+    assert_true(result.accuracy.bins[0][PROM_SIZES - 1] > 0); // unless it is asked for
+    options.veto = true;
     measure_all(&options, &truth, &other, 1);
     for (uint32_t d = 0; d < PROM_DIRS; d++)
         for (uint32_t s = 0; s < PROM_SIZES; s++) {
