@@ -21,13 +21,6 @@ static void predict(const prom_eval *eval, prom_cut *cut)
         cut->predicted_ms += (double)cut->entries.data[i].cost_ms;
 }
 
-static void append(const prom_eval *eval, prom_cut *cut, uint32_t node, uint32_t option)
-{
-    prom_eval_emit(eval, node, option, cut);
-    prom_cut_entry *e = &cut->entries.data[cut->entries.count - 1];
-    e->accuracy = prom_eval_accuracy(eval, node, e->rep);
-}
-
 static void remove_entry(prom_cut *cut, size_t index)
 {
     cut->entries.data[index] = cut->entries.data[--cut->entries.count];
@@ -35,7 +28,7 @@ static void remove_entry(prom_cut *cut, size_t index)
 
 void prom_cut_take_option(const prom_eval *eval, prom_cut *cut, size_t index, uint32_t option)
 {
-    append(eval, cut, cut->entries.data[index].node, option);
+    prom_eval_emit(eval, cut->entries.data[index].node, option, cut);
     remove_entry(cut, index);
     predict(eval, cut);
 }
@@ -46,7 +39,7 @@ uint32_t prom_cut_best_option(const prom_eval *eval, uint32_t node)
     uint32_t best = PROM_NONE;
     float most = -INFINITY;
     for (uint32_t o = n->first_option; o < n->first_option + n->option_count; o++) {
-        float accuracy = prom_eval_accuracy(eval, node, eval->options[o].rep);
+        float accuracy = eval->options[o].accuracy;
         if (accuracy > most) best = o, most = accuracy;
     }
     return best;
@@ -71,7 +64,7 @@ static void append_children(const prom_eval *eval, prom_cut *cut, uint32_t node,
         if (eval->nodes[c].culled) continue;
         uint32_t option = choose(eval, c);
         if (option != PROM_NONE)
-            append(eval, cut, c, option);
+            prom_eval_emit(eval, c, option, cut);
         else
             append_children(eval, cut, c, choose);
     }
@@ -99,6 +92,6 @@ void prom_cut_close(const prom_eval *eval, prom_cut *cut, uint32_t node, uint32_
 {
     for (size_t i = cut->entries.count; i-- > 0;)
         if (is_below(eval->model, cut->entries.data[i].node, node)) remove_entry(cut, i);
-    append(eval, cut, node, option);
+    prom_eval_emit(eval, node, option, cut);
     predict(eval, cut);
 }

@@ -55,8 +55,4 @@ void prom_still_look(prom_still *still, uint32_t i)
     prom_view_init(&s->view, &s->camera);
     settle(s);
     prom_eval_run(&s->eval, &s->selection, NULL, NULL);
-    for (size_t k = 0; k < s->cut.entries.count; k++) {
-        prom_cut_entry *e = &s->cut.entries.data[k];
-        e->accuracy = prom_eval_accuracy(&s->eval, e->node, e->rep);
-    }
 }

@@ -7,8 +7,6 @@
 
 #include <assert.h>
 
-#define BACKGROUNDS 2
-
 struct prom_view_error {
     prom_metric *metric;
     prom_measured how;
@@ -20,16 +18,8 @@ struct prom_view_error {
     float (*between)[4];
     prom_encoder encoder;
     uint8_t (*padded)[4];
-    float *truth_features[BACKGROUNDS], *features, *map;
+    float *truth_features[PROM_BACKGROUNDS], *features, *map;
 };
-
-static uint32_t radius_of(const char *metric, double ppd)
-{
-    prom_metric *m = prom_metric_create(metric, ppd, 1, 1, 1);
-    uint32_t radius = prom_metric_radius(m);
-    prom_metric_destroy(m);
-    return radius;
-}
 
 prom_view_error *prom_view_error_create(const prom_measured *measured, float size_px)
 {
@@ -42,7 +32,7 @@ prom_view_error *prom_view_error_create(const prom_measured *measured, float siz
     e->view_px = e->large ? PROM_VIEW_LARGE_PX : PROM_VIEW_PX;
     e->step = (float)e->view_px / size_px;
     e->side = (uint32_t)ceilf(size_px);
-    e->pad = radius_of(class->name, measured->ppd);
+    e->pad = prom_metric_radius_of(class->name, measured->ppd);
     e->wide = e->side + 2 * e->pad;
     size_t inner = (size_t)e->side * e->side, pixels = (size_t)e->wide * e->wide;
     e->metric = prom_metric_create(class->name, measured->ppd, e->wide, pixels, 1);
@@ -55,7 +45,7 @@ prom_view_error *prom_view_error_create(const prom_measured *measured, float siz
     e->padded = prom_alloc(pixels, sizeof *e->padded);
     e->map = prom_alloc(pixels, sizeof *e->map);
     e->features = prom_alloc(floats, sizeof *e->features);
-    for (int b = 0; b < BACKGROUNDS; b++)
+    for (int b = 0; b < PROM_BACKGROUNDS; b++)
         e->truth_features[b] = prom_alloc(floats, sizeof *e->truth_features[b]);
     return e;
 }
@@ -71,7 +61,7 @@ void prom_view_error_destroy(prom_view_error *e)
     prom_free(e->padded);
     prom_free(e->map);
     prom_free(e->features);
-    for (int b = 0; b < BACKGROUNDS; b++) prom_free(e->truth_features[b]);
+    for (int b = 0; b < PROM_BACKGROUNDS; b++) prom_free(e->truth_features[b]);
     prom_free(e);
 }
 
@@ -125,7 +115,7 @@ void prom_view_error_set_truth(prom_view_error *e, const prom_views *views, uint
                                uint8_t (*rgb)[3])
 {
     take_picture(e, views, dir, &e->truth);
-    for (int b = 0; b < BACKGROUNDS; b++)
+    for (int b = 0; b < PROM_BACKGROUNDS; b++)
         look(e, &e->truth, e->how.background[b], b == 0 ? rgb : NULL, e->truth_features[b]);
 }
 
@@ -139,7 +129,7 @@ double prom_view_error_run(prom_view_error *e, const prom_views *views, uint32_t
     double error = 0;
     *vetoed = false;
     take_picture(e, views, dir, &e->other);
-    for (int b = 0; b < BACKGROUNDS; b++) {
+    for (int b = 0; b < PROM_BACKGROUNDS; b++) {
         look(e, &e->other, e->how.background[b], b == 0 ? rgb : NULL, e->features);
         prom_metric_compare(e->metric, e->truth_features[b], e->features, e->wide, e->wide,
                             e->map);
@@ -148,5 +138,5 @@ double prom_view_error_run(prom_view_error *e, const prom_views *views, uint32_t
         error += prom_window_error(e->map, pixels, area, squares);
         *vetoed |= prom_window_vetoed(&e->how, size_px, area, e->map, e->wide, e->wide);
     }
-    return 1 - error / BACKGROUNDS;
+    return 1 - error / PROM_BACKGROUNDS;
 }

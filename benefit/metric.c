@@ -72,6 +72,14 @@ uint32_t prom_metric_radius(const prom_metric *metric)
     return metric->kind->radius(metric->state);
 }
 
+uint32_t prom_metric_radius_of(const char *name, double ppd)
+{
+    prom_metric *metric = prom_metric_create(name, ppd, 1, 1, 1);
+    uint32_t radius = prom_metric_radius(metric);
+    prom_metric_destroy(metric);
+    return radius;
+}
+
 size_t prom_metric_feature_floats(const prom_metric *metric, uint32_t width, uint32_t height)
 {
     return (size_t)metric->kind->planes * width * height;

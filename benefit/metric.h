@@ -44,6 +44,8 @@ void prom_metric_destroy(prom_metric *metric); // NULL is allowed
 const prom_metric_class *prom_metric_class_of(const prom_metric *metric);
 // Pixels around a pixel whose values can influence its error.
 uint32_t prom_metric_radius(const prom_metric *metric);
+// The same of the metric that prom_metric_create would make.
+uint32_t prom_metric_radius_of(const char *name, double ppd);
 
 // Floats that the features of a picture take.
 size_t prom_metric_feature_floats(const prom_metric *metric, uint32_t width, uint32_t height);

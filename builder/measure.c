@@ -23,14 +23,6 @@
 #define DISAGREE_SHARE 0.1f
 #define DISAGREE_COVERAGE 0.25
 
-static uint32_t radius_of(const char *metric, float ppd)
-{
-    prom_metric *m = prom_metric_create(metric, ppd, 1, 1, 1);
-    uint32_t radius = prom_metric_radius(m);
-    prom_metric_destroy(m);
-    return radius;
-}
-
 prom_measure *prom_measure_create(const prom_measure_options *options, float mean_luminance)
 {
     prom_measure *m = prom_calloc(1, sizeof *m);
@@ -47,7 +39,7 @@ prom_measure *prom_measure_create(const prom_measure_options *options, float mea
     pthread_mutex_init(&m->lock, NULL);
     pthread_cond_init(&m->coarse_done, NULL);
     if (!m->metric) return m;
-    m->pad = radius_of(name, m->how.ppd);
+    m->pad = prom_metric_radius_of(name, m->how.ppd);
     prom_encoder_init(&m->encoder);
     m->threads = prom_thread_count();
     m->scratches = prom_calloc(m->threads, sizeof *m->scratches);

@@ -5,7 +5,6 @@
 
 #include <string.h>
 
-#define BACKGROUNDS 2
 #define SIZES (PROM_SIZES + PROM_SIZES_LARGE)
 
 // What a thread works in.
@@ -49,7 +48,7 @@ static room room_for(const prom_measure *m, const prom_metric *metric, uint32_t 
         r.view = size_pixels(size);
         r.patches += r.view;
         r.other = window_floats(m, metric, size);
-        r.truth += BACKGROUNDS * r.other;
+        r.truth += PROM_BACKGROUNDS * r.other;
     }
     return r;
 }
@@ -137,7 +136,7 @@ void measure_take_truth(const prom_measure *m, measure_scratch *s, const prom_vi
     for (uint32_t size = sizes.first; size < sizes.first + sizes.count; size++) {
         const prom_patch *patch = &s->sizes[size];
         s->features[size] = (size_t)(features - s->truth);
-        for (int b = 0; b < BACKGROUNDS; b++) {
+        for (int b = 0; b < PROM_BACKGROUNDS; b++) {
             take_features(m, patch, m->how.background[b], s, features);
             features += prom_metric_feature_floats(s->metric, patch->part.width + 2 * m->pad,
                                                    patch->part.height + 2 * m->pad);
@@ -155,14 +154,14 @@ static uint8_t compare_size(const prom_measure *m, uint32_t size, const prom_pat
     const float *features = s->truth + s->features[size], size_px = prom_size_of_bin(size);
     const double area = prom_patch_area(&s->sizes[size]);
     double error = 0.0;
-    for (int b = 0; b < BACKGROUNDS; b++) {
+    for (int b = 0; b < PROM_BACKGROUNDS; b++) {
         take_features(m, patch, m->how.background[b], s, s->other);
         prom_metric_compare(s->metric, features, s->other, wide, high, s->map);
         features += prom_metric_feature_floats(s->metric, wide, high);
         error += prom_window_error(s->map, window, area, m->metric->squares);
         if (prom_window_vetoed(&m->how, size_px, area, s->map, wide, high)) return 0;
     }
-    return prom_byte_of_accuracy(1.0 - error / BACKGROUNDS);
+    return prom_byte_of_accuracy(1.0 - error / PROM_BACKGROUNDS);
 }
 
 void measure_compare(const prom_measure *m, measure_scratch *s, const prom_views *views,

@@ -113,10 +113,11 @@ typedef struct prom_accuracy_row {
 #define PROM_METRIC_NAME_BYTES 16
 #define PROM_PPD_MIN 1.0f // pixels per degree that filters are made for
 #define PROM_PPD_MAX 1000.0f
+#define PROM_BACKGROUNDS 2 // that each representation is compared over
 typedef struct prom_measured {
     char metric[PROM_METRIC_NAME_BYTES]; // benefit/metric.h
     float ppd;                           // pixels per degree of the views
-    float background[2];                 // linear luminance
+    float background[PROM_BACKGROUNDS];  // linear luminance
     float veto_percentile, veto_error;   // of the footprint's pixels; above it accuracy is 0
 } prom_measured;
 

@@ -103,23 +103,6 @@ static float accuracy_size(const prom_eval *eval, uint32_t node)
     return fmaxf(n->size_px, 2.0f * eval->model->radius[node] * view->f_px / nearest);
 }
 
-// Where the accuracies of a node's representations stand in the tables.
-static prom_accuracy_place place_of(const prom_eval *eval, uint32_t node)
-{
-    float size = accuracy_size(eval, node), table_px = eval->selection->table_px;
-    prom_accuracy_place place;
-    prom_accuracy_place_init(&place, eval->nodes[node].uv,
-                             table_px > 0.0f ? size * table_px : size);
-    return place;
-}
-
-float prom_eval_accuracy(const prom_eval *eval, uint32_t node, uint32_t rep)
-{
-    const prom_model *m = eval->model;
-    prom_accuracy_place place = place_of(eval, node);
-    return prom_accuracy(m, rep, &place, m->prototypes[m->prototype[node]].radius);
-}
-
 static void add_options(prom_eval *eval, uint32_t node)
 {
     const prom_model *m = eval->model;
@@ -129,8 +112,9 @@ static void add_options(prom_eval *eval, uint32_t node)
     n->option_count = 0;
     if (eval->selection->order == PROM_ORDER_PIXELS) n->value_px = n->px * n->weight;
     if (n->near_case && m->child_count[node]) return;
-    float size = accuracy_size(eval, node);
-    prom_accuracy_place place = place_of(eval, node);
+    float size = accuracy_size(eval, node), table_px = eval->selection->table_px;
+    prom_accuracy_place place;
+    prom_accuracy_place_init(&place, n->uv, table_px > 0.0f ? size * table_px : size);
     for (uint32_t i = 0; i < p->rep_count; i++) {
         uint32_t rep = p->first_rep + i;
         const prom_representation *r = &m->reps[rep];

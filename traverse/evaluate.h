@@ -72,10 +72,6 @@ void prom_eval_run(prom_eval *eval, const prom_selection *selection, prom_eval_o
 // and where the picture cannot become visibly better. `user` is the evaluation.
 bool prom_eval_open_visible(void *user, uint32_t node);
 
-// After a run, of a visited node: the accuracy of one of its representations in this view,
-// whether anything of it shows or not.
-float prom_eval_accuracy(const prom_eval *eval, uint32_t node, uint32_t rep);
-
 // Starts a cut and appends a node drawn by one of its options (its index in eval->options).
 void prom_eval_begin_cut(const prom_eval *eval, prom_cut *cut);
 void prom_eval_emit(const prom_eval *eval, uint32_t node, uint32_t option, prom_cut *cut);
