@@ -198,7 +198,7 @@ static prom_still_options views_of(const bench_options *o, uint32_t views)
 {
     return (prom_still_options){.selector = o->loop.selector,
                                 .budget_ms = o->loop.budget_ms,
-                                .distance_scale = o->loop.distance_scale,
+                                .rule_scale = o->loop.rule_scale,
                                 .path_frames = o->loop.frames,
                                 .views = views};
 }
@@ -257,7 +257,7 @@ prom_status prom_command_bench(int argc, char **argv, prom_error *error)
     if (!(o.view.budget_ms > 0)) o.view.budget_ms = DEFAULT_BUDGET_MS;
     o.loop.selector = o.view.selector;
     o.loop.budget_ms = o.view.budget_ms;
-    o.loop.distance_scale = o.view.distance_scale;
+    o.loop.rule_scale = o.view.rule_scale;
     prom_command_files files = {{o.model, prom_view_path_file(&o.view), o.view.profile},
                                 {&o.report, &o.csv, &o.swap_csv, &o.swap_plot}};
     prom_status status = prom_outputs_check(&files, error);

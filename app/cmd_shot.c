@@ -128,7 +128,7 @@ static prom_status draw(const shot_options *o, prom_session *session, prom_error
         prom_renderer_take_stats(session->renderer);
         prom_sight_begin(&sight, &camera);
         prom_session_select(session, selector, sight.visibility, &camera, allowed,
-                            o->view.distance_scale, &cut);
+                            o->view.rule_scale, &cut);
         prom_sight_draw(&sight, &cut, &camera, i + 1 < frames ? &plain : &o->draw);
     }
     prom_sight_finish(&sight);

@@ -133,7 +133,7 @@ prom_status prom_command_walk(int argc, char **argv, prom_error *error)
     o.walk.name = slash ? slash + 1 : o.model;
     o.walk.selector = o.view.selector;
     o.walk.budget_ms = o.view.budget_ms;
-    o.walk.distance_scale = o.view.distance_scale;
+    o.walk.rule_scale = o.view.rule_scale;
     prom_command_files files = {{o.model, prom_view_path_file(&o.view), o.view.profile},
                                 {&o.shot}};
     prom_status status = prom_outputs_check(&files, error);

@@ -165,7 +165,7 @@ prom_status prom_frame_loop_run(prom_session *session, const prom_loop_options *
     loop l = {.options = options};
     prom_status status =
         prom_frame_step_init(&l.step, session, options->selector, options->budget_ms,
-                             options->distance_scale, error);
+                             options->rule_scale, error);
     if (status) return status;
     l.step.dt_s = path_step_s(&session->path);
     status = open_comparison(&l, error);

@@ -9,7 +9,7 @@
 typedef struct prom_loop_options {
     const char *selector;
     uint32_t frames, warmup; // warm-up frames are drawn before the first and not recorded
-    double budget_ms, distance_scale;
+    double budget_ms, rule_scale;
     const char *keep_folder; // PNGs of every keep_every-th frame; NULL: none
     uint32_t keep_every;
     bool keep_colours; // and each of them again in false colours

@@ -5,11 +5,11 @@
 #include <string.h>
 
 prom_status prom_frame_step_init(prom_frame_step *step, prom_session *session,
-                                 const char *selector, double budget_ms, double distance_scale,
+                                 const char *selector, double budget_ms, double rule_scale,
                                  prom_error *error)
 {
     *step = (prom_frame_step){
-        .session = session, .budget_ms = budget_ms, .distance_scale = distance_scale};
+        .session = session, .budget_ms = budget_ms, .rule_scale = rule_scale};
     prom_governor_init(&step->governor, session->cost.margin);
     prom_last_cut_init(&step->last, &session->model);
     step->selector = prom_selector_create(selector, &session->model, error);
@@ -39,7 +39,7 @@ static prom_switches choose(prom_frame_step *step, const prom_camera *camera, do
     prom_view before = step->view;
     prom_view_init(&step->view, camera);
     prom_selection selection = prom_session_selection(
-        step->session, &step->view, step->sight.visibility, allowed_ms, step->distance_scale);
+        step->session, &step->view, step->sight.visibility, allowed_ms, step->rule_scale);
     selection.last = &step->last;
     if (step->last.number) selection.weighting.before = &before;
     if (same_pose(&before.camera, camera)) selection.hysteresis = 0.0f;

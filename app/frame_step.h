@@ -29,13 +29,13 @@ typedef struct prom_frame_step {
     prom_cut cut;   // the last frame's
     prom_view view; // and its
     prom_last_cut last;
-    double budget_ms, distance_scale;
+    double budget_ms, rule_scale;
     double dt_s; // between frames, for how fast things move; 0: nothing does. The caller's
 } prom_frame_step;
 
 // The session must outlive the step. On failure there is nothing to finish.
 prom_status prom_frame_step_init(prom_frame_step *step, prom_session *session,
-                                 const char *selector, double budget_ms, double distance_scale,
+                                 const char *selector, double budget_ms, double rule_scale,
                                  prom_error *error);
 void prom_frame_step_finish(prom_frame_step *step);
 // Selects and draws a frame into the session's target and waits for it. start_ms: when the

@@ -117,7 +117,7 @@ const struct argp prom_argp_log = {.options = log_options, .parser = parse_log};
 // ---- what shot and bench share
 
 const prom_view_options prom_view_options_default = {
-    .distance_scale = 1,
+    .rule_scale = 1,
     .fov_degrees = 60,
     .visibility = PROM_SEE_BOTH,
     .size_px = {1280, 720},
@@ -140,7 +140,7 @@ enum {
     KEY_SELECTOR,
     KEY_RESOLUTION,
     KEY_PROFILE,
-    KEY_DISTANCE_SCALE,
+    KEY_RULE_SCALE,
     KEY_FOV,
     KEY_VISIBILITY,
     KEY_PPD,
@@ -154,8 +154,11 @@ static const struct argp_option view_options[] = {
      "What chooses the representations: meta, greedy, distance, full or coarsest", 0},
     {"resolution", KEY_RESOLUTION, "W,H", 0, "Size of the picture in pixels (1280,720)", 0},
     {"fov-deg", KEY_FOV, "DEGREES", 0, "Vertical field of view (60)", 0},
-    {"distance-scale", KEY_DISTANCE_SCALE, "FACTOR", 0,
-     "For the selector `distance`: factor on its ranges (1)", 0},
+    {"rule-scale", KEY_RULE_SCALE, "FACTOR", 0,
+     "For selectors that follow a rule of their own (`distance`, its ranges): factor on it, "
+     "finer with more (1)",
+     0},
+    {"distance-scale", KEY_RULE_SCALE, NULL, OPTION_ALIAS, NULL, 0},
     {"visibility", KEY_VISIBILITY, "none|frame|cells|both", 0,
      "From what the selector knows what is hidden: the pixels counted in earlier frames, the "
      "model's view cells, or both (both)",
@@ -218,8 +221,8 @@ static error_t parse_view(int key, char *text, struct argp_state *state)
     case KEY_PROFILE:
         o->profile = text;
         break;
-    case KEY_DISTANCE_SCALE:
-        o->distance_scale = prom_option_number(state, "--distance-scale", text, 1e-3, 1e3);
+    case KEY_RULE_SCALE:
+        o->rule_scale = prom_option_number(state, "--rule-scale", text, 1e-3, 1e3);
         break;
     case KEY_VISIBILITY:
         o->visibility = known_visibility(state, text);

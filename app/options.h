@@ -51,7 +51,7 @@ typedef struct prom_view_options {
     const char *selector; // NULL: the command's default
     const char *profile;  // NULL: the device's own
     double budget_ms;     // 0: not given
-    double distance_scale;
+    double rule_scale;
     double fov_degrees; // vertical
     prom_visibility_mode visibility;
     uint32_t size_px[2];

@@ -178,13 +178,13 @@ static float table_px(const prom_session *session)
 
 prom_selection prom_session_selection(const prom_session *session, const prom_view *view,
                                       const prom_visibility *visibility, double budget_ms,
-                                      double distance_scale)
+                                      double rule_scale)
 {
     return (prom_selection){
         .view = view,
         .cost = &session->cost,
         .budget_ms = budget_ms,
-        .distance_scale = (float)distance_scale,
+        .rule_scale = (float)rule_scale,
         .table_px = table_px(session),
         .visibility = visibility,
         .weighting = {.use = session->choice.weights, .semantics = session->semantics},
@@ -196,12 +196,12 @@ prom_selection prom_session_selection(const prom_session *session, const prom_vi
 
 void prom_session_select(const prom_session *session, prom_selector *selector,
                          const prom_visibility *visibility, const prom_camera *camera,
-                         double budget_ms, double distance_scale, prom_cut *cut)
+                         double budget_ms, double rule_scale, prom_cut *cut)
 {
     prom_view view;
     prom_view_init(&view, camera);
     prom_selection selection =
-        prom_session_selection(session, &view, visibility, budget_ms, distance_scale);
+        prom_session_selection(session, &view, visibility, budget_ms, rule_scale);
     prom_selector_run(selector, &selection, cut);
 }
 

@@ -58,11 +58,11 @@ double prom_session_ppd(const prom_session *session);
 // What a selector of this session is given. visibility: NULL, or begun for this view.
 prom_selection prom_session_selection(const prom_session *session, const prom_view *view,
                                       const prom_visibility *visibility, double budget_ms,
-                                      double distance_scale);
+                                      double rule_scale);
 // Selects a cut for a view. visibility: NULL, or begun for it.
 void prom_session_select(const prom_session *session, prom_selector *selector,
                          const prom_visibility *visibility, const prom_camera *camera,
-                         double budget_ms, double distance_scale, prom_cut *cut);
+                         double budget_ms, double rule_scale, prom_cut *cut);
 // Draws a cut into the session's target; `draw` waits for the picture.
 void prom_session_submit(prom_session *session, const prom_cut *cut, const prom_camera *camera,
                          const prom_frame_options *options);

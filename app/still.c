@@ -39,7 +39,7 @@ static void settle(prom_still *s)
     for (int i = 0;; i++) {
         prom_sight_begin(&s->sight, &s->camera);
         s->selection = prom_session_selection(s->session, &s->view, s->sight.visibility,
-                                              s->allowed_ms, s->options->distance_scale);
+                                              s->allowed_ms, s->options->rule_scale);
         prom_selector_run(s->selector, &s->selection, &s->cut);
         if (i == SETTLE_FRAMES || !s->sight.counter) return;
         prom_sight_draw(&s->sight, &s->cut, &s->camera, &plain);

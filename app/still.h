@@ -9,7 +9,7 @@
 
 typedef struct prom_still_options {
     const char *selector;
-    double budget_ms, distance_scale;
+    double budget_ms, rule_scale;
     uint32_t path_frames; // that the views are chosen from
     uint32_t views;       // evenly spaced; 0: none
 } prom_still_options;

@@ -231,7 +231,7 @@ prom_status prom_walk_run(prom_session *session, prom_window *window,
     *result = (prom_walk_result){0};
     prom_status status =
         prom_frame_step_init(&w.step, session, options->selector, options->budget_ms,
-                             options->distance_scale, error);
+                             options->rule_scale, error);
     if (status) return status;
     begin(&w);
     while (!status && goes_on(&w)) status = take_turn(&w, error);

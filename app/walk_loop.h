@@ -8,7 +8,7 @@
 
 typedef struct prom_walk_options {
     const char *name, *selector; // name: the model's, for the title
-    double budget_ms, distance_scale;
+    double budget_ms, rule_scale;
     bool play;       // start on the path
     uint64_t frames; // 0: until the user ends it; else no rests, and a key of the path each
 } prom_walk_options;

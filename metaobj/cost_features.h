@@ -25,7 +25,18 @@ typedef struct prom_cost_features {
     // prom_cost_edges. Devices shade in blocks of pixels, of which an edge wastes a part.
     double edges;
     double hidden_edges; // the same of the hidden pixels
+    double binds;        // changes of state (textures, programs) between draws
+    double upload_bytes; // sent to the device meanwhile
 } prom_cost_features;
+
+// Kinds of work whose predictions may be off by different factors.
+typedef enum prom_cost_term {
+    PROM_TERM_FIXED,    // what every frame takes, and the background layer
+    PROM_TERM_GEOMETRY, // draws, vertices, triangles, edges
+    PROM_TERM_PIXELS,   // shaded ones
+    PROM_TERM_HIDDEN,   // pixels drawn behind others
+    PROM_TERMS
+} prom_cost_term;
 
 typedef struct prom_cost_sample {
     prom_cost_features features;

@@ -3,6 +3,7 @@
 #define PROM_METAOBJ_CUT_H
 
 #include "metaobj/base/alloc.h"
+#include "metaobj/cost_features.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -26,10 +27,15 @@ typedef struct prom_cut_entry {
 // Exactly one entry on every root-to-leaf path whose leaf is in the frustum.
 typedef struct prom_cut {
     PROM_ARRAY(prom_cut_entry) entries; // the array keeps its memory from frame to frame
-    double predicted_ms;    // fixed part + all entries, before the correction factor
-    double cmin_ms;         // the same for the cheapest cut
-    double benefit, loss;   // weighted pixels shown right, and wrong (DESIGN: benefit)
+    double predicted_ms;         // fixed part + all entries, before the correction factor
+    double terms_ms[PROM_TERMS]; // predicted_ms in its parts
+    double cmin_ms;              // predicted_ms of the cheapest cut
+    double cmin_benefit;         // and its benefit
+    double benefit, loss;        // weighted pixels shown right, and wrong (DESIGN: benefit)
+    double bound;           // the certificate: no cut within the budget has more benefit, see
+                            // traverse/bound.h; INFINITY: not asked for, or none is known
     bool feasible;          // predicted_ms is within the budget that the selector was given
+    bool limited;           // more time would have bought a better picture
     uint32_t nodes_visited; // in the frustum, the work of the selection: for benchmarks
 } prom_cut;
 

@@ -17,8 +17,8 @@ typedef struct bench {
     prom_view view;
     prom_cost_model cost;
     prom_selection selection;
-    prom_selector *selectors[8];
-    prom_cut cuts[8];
+    prom_selector *selectors[16];
+    prom_cut cuts[16];
 } bench;
 
 static inline void bench_init(bench *b, uint64_t seed, const random_model_options *o)

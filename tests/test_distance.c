@@ -92,7 +92,7 @@ static void artists_levels_switch_at_their_distances(void **state)
         // Where the artist's engine drops it, and where all others take a box.
         assert_int_equal(object_first_at(&b, 301), ARTIST_2);
         assert_int_equal(object_first_at(&b, 1e5), ARTIST_2);
-        b.selection.distance_scale = 3;
+        b.selection.rule_scale = 3;
         assert_int_equal(object_first_at(&b, 119), ITSELF);
         assert_int_equal(object_first_at(&b, 121), ARTIST_1);
         assert_int_equal(object_first_at(&b, 301), ARTIST_2);

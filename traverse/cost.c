@@ -296,6 +296,32 @@ uint32_t prom_cost_kind(const prom_representation *rep)
     return lit ? PROM_COST_IMPOSTOR_LIT : rep->shading;
 }
 
+void prom_cost_add_terms(const prom_cost_model *model, const prom_representation *rep,
+                         double shaded_px, double hidden_px, double terms[PROM_TERMS])
+{
+    terms[PROM_TERM_GEOMETRY] +=
+        model->draw_ms * rep->draws + model->vertex_ms * rep->vertices +
+        model->triangle_ms * rep->triangles +
+        model->edge_ms * prom_cost_edges(rep->triangles, shaded_px, hidden_px) +
+        model->hidden_edge_ms * prom_cost_edges(rep->triangles, hidden_px, shaded_px);
+    terms[PROM_TERM_PIXELS] += model->pixel_ms[prom_cost_kind(rep)] * shaded_px;
+    terms[PROM_TERM_HIDDEN] += model->hidden_pixel_ms * hidden_px;
+}
+
+prom_cost_model prom_cost_scaled(const prom_cost_model *model, const double factors[PROM_TERMS])
+{
+    prom_cost_model scaled = *model;
+    scaled.fixed_ms *= factors[PROM_TERM_FIXED];
+    scaled.draw_ms *= factors[PROM_TERM_GEOMETRY];
+    scaled.vertex_ms *= factors[PROM_TERM_GEOMETRY];
+    scaled.triangle_ms *= factors[PROM_TERM_GEOMETRY];
+    scaled.edge_ms *= factors[PROM_TERM_GEOMETRY];
+    scaled.hidden_edge_ms *= factors[PROM_TERM_GEOMETRY];
+    for (int k = 0; k < PROM_COST_KINDS; k++) scaled.pixel_ms[k] *= factors[PROM_TERM_PIXELS];
+    scaled.hidden_pixel_ms *= factors[PROM_TERM_HIDDEN];
+    return scaled;
+}
+
 double prom_cost_of_rep(const prom_cost_model *model, const prom_representation *rep,
                         double shaded_px, double hidden_px)
 {

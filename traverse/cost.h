@@ -35,6 +35,13 @@ uint32_t prom_cost_kind(const prom_representation *rep);
 double prom_cost_of_rep(const prom_cost_model *model, const prom_representation *rep,
                         double shaded_px, double hidden_px);
 
+// The same in its parts, added to terms[PROM_TERMS]. Nothing is fixed in it.
+void prom_cost_add_terms(const prom_cost_model *model, const prom_representation *rep,
+                         double shaded_px, double hidden_px, double terms[PROM_TERMS]);
+// The model with the coefficients of each term multiplied by its factor.
+prom_cost_model prom_cost_scaled(const prom_cost_model *model,
+                                 const double factors[PROM_TERMS]);
+
 // JSON profile files (docs/FORMAT.md). Saving replaces the file at once or not at all. Loading
 // checks every key and number; on failure *model stays as it was. Profiles without a size load.
 prom_status prom_cost_save(const prom_cost_model *model, const char *path, prom_error *error);

@@ -249,10 +249,14 @@ void prom_eval_begin_cut(const prom_eval *eval, prom_cut *cut)
 {
     cut->entries.count = 0;
     cut->predicted_ms = eval->fixed_ms;
+    memset(cut->terms_ms, 0, sizeof cut->terms_ms);
+    cut->terms_ms[PROM_TERM_FIXED] = eval->fixed_ms;
     cut->cmin_ms = eval->fixed_ms + eval->nodes[0].cmin;
+    cut->cmin_benefit = eval->nodes[0].cmin_benefit;
     cut->benefit = cut->loss = 0.0;
+    cut->bound = INFINITY;
     cut->nodes_visited = eval->visited_count;
-    cut->feasible = false;
+    cut->feasible = cut->limited = false;
 }
 
 void prom_eval_emit(const prom_eval *eval, uint32_t node, uint32_t option, prom_cut *cut)
@@ -274,6 +278,7 @@ void prom_eval_emit(const prom_eval *eval, uint32_t node, uint32_t option, prom_
                                        .whole = n->inside,
                                    });
     cut->predicted_ms += o->cost;
+    prom_eval_add_terms(eval, node, o->rep, cut->terms_ms);
     cut->benefit += o->benefit;
     cut->loss += (double)(n->px * n->weight) - o->benefit;
 }

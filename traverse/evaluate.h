@@ -52,6 +52,7 @@ typedef struct prom_eval {
     prom_option *options;
     uint32_t option_count;
     double fixed_ms;      // fixed part of the frame and the background layer
+    double shaded_share;  // part of the visible pixels that are shaded, see evaluate_cost.c
     const bool *any_size; // per representation: valid whatever its max_size_px says, the
                           // selector knows better; NULL: none. The selector's own
     bool any_mesh_hides;  // what is hidden may be drawn by any mesh, whatever its gaps

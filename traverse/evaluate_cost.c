@@ -58,25 +58,58 @@ static double shaded_layers(const prom_representation *rep)
     return opaque ? fmin(1.0 + log(layers), layers) : layers;
 }
 
-static void set_costs(prom_eval *eval, uint32_t node, double share)
+// A node's pixels, from which follow those that its representations fill.
+typedef struct node_pixels {
+    double shown, footprint;
+    double
+        box; // of a box that stands for it, per pixel of the footprint; below 0: not yet known
+} node_pixels;
+
+static node_pixels pixels_of(const prom_eval *eval, uint32_t node)
 {
-    const prom_selection *s = eval->selection;
     const prom_eval_node *n = &eval->nodes[node];
-    double shown = share * n->px, footprint = fmax(n->footprint_px, shown), box = -1.0;
+    double shown = eval->shaded_share * n->px;
+    return (node_pixels){shown, fmax(n->footprint_px, shown), -1.0};
+}
+
+// Pixels that a representation shades, and that it draws behind others.
+static void fill_of(const prom_eval *eval, uint32_t node, const prom_representation *rep,
+                    node_pixels *px, double *shaded, double *hidden)
+{
+    double filled_layers = (double)rep->layers, shaded_part = shaded_layers(rep);
+    if (rep->kind != PROM_REP_MESH && px->footprint > 0.0) { // a box is filled all over
+        if (px->box < 0.0)
+            px->box = prom_box_px(eval->selection->view, eval->model, node,
+                                  eval->nodes[node].dir, (float)px->footprint) /
+                      px->footprint;
+        filled_layers *= px->box;
+        shaded_part *= px->box;
+    }
+    *shaded = shaded_part * px->shown;
+    *hidden = filled_layers * px->footprint - *shaded;
+}
+
+static void set_costs(prom_eval *eval, uint32_t node)
+{
+    const prom_eval_node *n = &eval->nodes[node];
+    node_pixels px = pixels_of(eval, node);
     for (uint32_t i = 0; i < n->option_count; i++) {
         prom_option *o = &eval->options[n->first_option + i];
         const prom_representation *rep = &eval->model->reps[o->rep];
-        double filled = (double)rep->layers, shaded = shaded_layers(rep);
-        if (rep->kind != PROM_REP_MESH && footprint > 0.0) { // a box is filled all over
-            if (box < 0.0)
-                box = prom_box_px(s->view, eval->model, node, n->dir, (float)footprint) /
-                      footprint;
-            filled *= box;
-            shaded *= box;
-        }
-        o->cost =
-            prom_cost_of_rep(s->cost, rep, shaded * shown, filled * footprint - shaded * shown);
+        double shaded, hidden;
+        fill_of(eval, node, rep, &px, &shaded, &hidden);
+        o->cost = prom_cost_of_rep(eval->selection->cost, rep, shaded, hidden);
     }
+}
+
+void prom_eval_add_terms(const prom_eval *eval, uint32_t node, uint32_t rep,
+                         double terms[PROM_TERMS])
+{
+    const prom_representation *r = &eval->model->reps[rep];
+    node_pixels px = pixels_of(eval, node);
+    double shaded, hidden;
+    fill_of(eval, node, r, &px, &shaded, &hidden);
+    prom_cost_add_terms(eval->selection->cost, r, shaded, hidden, terms);
 }
 
 static void take_cheapest(prom_eval *eval, uint32_t node)
@@ -125,11 +158,11 @@ void prom_eval_find_costs(prom_eval *eval)
 {
     const prom_cost_model *cost = eval->selection->cost;
     double sum = sum_px(eval), screen = prom_view_screen_px(eval->selection->view);
-    double share = shaded_share(sum, screen);
+    eval->shaded_share = shaded_share(sum, screen);
     eval->fixed_ms = cost->fixed_ms + background_cost(eval, sum, screen);
     for (uint32_t i = eval->visited_count; i-- > 0;) {
         uint32_t node = eval->visited[i];
-        set_costs(eval, node, share);
+        set_costs(eval, node);
         take_cheapest(eval, node);
         if (eval->nodes[node].expanded) take_opening(eval, node);
     }

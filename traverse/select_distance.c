@@ -204,7 +204,7 @@ static void select_distance(void *pointer, const prom_selection *selection, prom
 {
     distance_state *state = pointer;
     prom_eval *eval = &state->eval;
-    state->scale = selection->distance_scale > 0.0f ? selection->distance_scale : 1.0f;
+    state->scale = selection->rule_scale > 0.0f ? selection->rule_scale : 1.0f;
     prom_eval_run(eval, selection, open_cluster, state);
     prom_eval_begin_cut(eval, cut);
     for (uint32_t i = 0; i < eval->visited_count; i++) {
@@ -224,6 +224,7 @@ const prom_selector_class prom_select_distance = {
     .name = "distance",
     .summary =
         "fixed ranges with hysteresis, the artists' own where there are; heeds no budget",
+    .has_scale = true,
     .create = create,
     .destroy = destroy,
     .select = select_distance,

@@ -17,7 +17,13 @@ typedef struct prom_selection {
     const prom_view *view;
     const prom_cost_model *cost;
     double budget_ms; // for prediction (fixed part included): what the cut may be predicted at
-    float distance_scale; // for `distance`: factor on its ranges; 0 means 1
+    // For selectors that follow a rule of their own (`has_scale`): factor on its measure, more
+    // of it is finer; 0 means 1.
+    float rule_scale;
+    double measured_ms; // for `feedback`: what the last frame took; 0: not known
+    bool certify;       // a bound is wanted: prom_cut.bound
+    uint32_t
+        max_switches; // of what is shown, from one cut to the next (see last); 0: any number
     // Pixels of the accuracy tables for each of this view: the ratio of their pixels per
     // degree. 0 means 1.
     float table_px;
@@ -38,6 +44,7 @@ typedef struct prom_selector_class {
     const char *summary; // one line
     bool budgeted;       // heeds budget_ms
     bool uses_cost;      // its cut depends on the cost model; else only predicted_ms does
+    bool has_scale;      // it heeds rule_scale
     void *(*create)(const prom_model *model);
     void (*destroy)(void *state);
     void (*select)(void *state, const prom_selection *selection, prom_cut *cut);

@@ -63,10 +63,10 @@ static void time_selectors(uint32_t leaves, int frames)
     prom_cost_model cost = {
         .fixed_ms = 1, .draw_ms = 5e-4, .triangle_ms = 1.2e-4, .hidden_pixel_ms = 5e-7};
     for (int k = 0; k < PROM_SHADE_COUNT; k++) cost.pixel_ms[k] = 4e-6;
-    prom_selector *selectors[8];
-    prom_cut cuts[8] = {0};
-    tally tallies[8] = {0};
-    double budgets[8] = {0};
+    prom_selector *selectors[16];
+    prom_cut cuts[16] = {0};
+    tally tallies[16] = {0};
+    double budgets[16] = {0};
     for (size_t s = 0; s < prom_selector_count(); s++)
         selectors[s] = prom_selector_create(prom_selector_at(s)->name, &m, NULL);
     prom_eval eval;
