@@ -3,7 +3,6 @@
 //
 // The whole way through the program with a tiny city: scene, build, info, shot, bench, and what
 // goes wrong with a real model at hand. Skips where there is no GL.
-#include "tests/run_program.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -15,7 +14,10 @@
 #include <sys/stat.h>
 
 #include <cmocka.h>
+
 #include <jansson.h>
+
+#include "tests/program_fixture.h"
 
 #define SMALL " --resolution 160,90 --profile p.json --quiet"
 // Comparing every view takes minutes under the sanitizers; the metrics have tests of their own.
@@ -24,16 +26,6 @@
 #else
 #define QUICK " --quiet"
 #endif
-
-static program_run run;
-static bool no_device;
-
-static void expect(const char *arguments, int code)
-{
-    run_program(&run, arguments);
-    if (run.code != code) fprintf(stderr, "promenade %s: %s\n", arguments, run.err);
-    assert_int_equal(run.code, code);
-}
 
 static off_t size_of(const char *path)
 {
@@ -44,21 +36,12 @@ static off_t size_of(const char *path)
 static int make_model(void **state)
 {
     (void)state;
-    run_program(&run, "calibrate --effort 1 --resolution 160,90 -o p.json --quiet");
-    no_device = run.code == 3;
-    if (no_device) {
-        fprintf(stderr, "skipped: %s", run.err);
-        return 0;
-    }
-    assert_int_equal(run.code, 0);
+    if (!calibrate_small()) return 0;
     expect("scene city --seed 7 --size 1 --detail 1 --styles 2 -o city.glb --path city.path",
            0);
     expect("build city.glb -o city.prom" QUICK, 0);
     return 0;
 }
-
-#define NEED_DEVICE()                                                                          \
-    if (no_device) skip()
 
 static json_t *at(json_t *json, const char *path)
 {

@@ -6,7 +6,6 @@
 // writes: it ends with a picture, or with exit code 2 and one line that names the file; never
 // by a signal, and never with half a picture. Skips where there is no GL.
 #include "metaobj/container_schema.h"
-#include "tests/run_program.h"
 
 #include <setjmp.h>
 #include <sqlite3.h>
@@ -17,11 +16,11 @@
 
 #include <cmocka.h>
 
+#include "tests/program_fixture.h"
+
 #define CUTS 15
 #define FLIPS 35
 
-static program_run run;
-static bool no_device;
 static uint8_t *whole; // bytes of the sound container
 static size_t whole_bytes;
 
@@ -55,16 +54,9 @@ static void write_scene(void)
 static int make_model(void **state)
 {
     (void)state;
-    run_program(&run, "calibrate --effort 1 --resolution 160,90 -o p.json --quiet");
-    no_device = run.code == 3;
-    if (no_device) {
-        fprintf(stderr, "skipped: %s", run.err);
-        return 0;
-    }
+    if (!calibrate_small()) return 0;
     write_scene();
-    run_program(&run, "build c.obj -o c.prom --quiet");
-    if (run.code) fprintf(stderr, "%s", run.err);
-    assert_int_equal(run.code, 0);
+    expect("build c.obj -o c.prom --quiet", 0);
     unlink("c.prom.work"); // what the builder keeps for the next build
     struct stat st;
     assert_int_equal(stat("c.prom", &st), 0);

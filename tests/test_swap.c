@@ -4,7 +4,6 @@
 // The swap test and the oracle on a street of boxes: finite numbers, the same on every run, in
 // the report, the table and the plot. Skips where there is no GL.
 #include "tests/obj_street.h"
-#include "tests/run_program.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -13,7 +12,10 @@
 #include <stdint.h>
 
 #include <cmocka.h>
+
 #include <jansson.h>
+
+#include "tests/program_fixture.h"
 
 #define VIEWS 6
 #define SWAPS 5
@@ -21,33 +23,14 @@
     "bench street.prom --frames 120 --warmup 0 --quality-frames 0 "                            \
     "--budget-ms 1.5 --selector greedy --resolution 160,90 --profile p.json --quiet "
 
-static program_run run;
-static bool no_device;
-
-static void expect(const char *arguments, int code)
-{
-    run_program(&run, arguments);
-    if (run.code != code) fprintf(stderr, "promenade %s: %s\n", arguments, run.err);
-    assert_int_equal(run.code, code);
-}
-
 static int make_model(void **state)
 {
     (void)state;
-    run_program(&run, "calibrate --effort 1 --resolution 160,90 -o p.json --quiet");
-    no_device = run.code == 3;
-    if (no_device) {
-        fprintf(stderr, "skipped: %s", run.err);
-        return 0;
-    }
-    assert_int_equal(run.code, 0);
+    if (!calibrate_small()) return 0;
     write_street("street.obj", 40, 0, 0);
     expect("build street.obj -o street.prom --quiet", 0);
     return 0;
 }
-
-#define NEED_DEVICE()                                                                          \
-    if (no_device) skip()
 
 static json_t *found(json_t *report, const char *key)
 {
