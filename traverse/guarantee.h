@@ -6,15 +6,19 @@
 //
 // Predictions are corrected by a fast global scale (what the machine does just now) and slow
 // factors of the terms (what this scene is like on this device), both bounded. What is left is
-// the score of a frame, actual / predicted; the margin is an adaptive conformal quantile of
-// the scores (Gibbs and Candès 2021, Adaptive conformal inference under distribution shift),
-// which only frames predicted at nearly the budget may move, with the quantile of the recent
-// scores as its floor. Plain numbers in and out, no clock.
+// the score of a frame, actual / expected, in which other_ms beyond the charge counts as
+// drawing. The margin covers the quantile of the recent scores and, on top, as much as the
+// misses beyond the accepted ones ask for: the proportional and the integral part of a
+// conformal controller (Gibbs and Candès 2021, Adaptive conformal inference under distribution
+// shift; Angelopoulos, Candès and Tibshirani 2023, Conformal PID control for time series
+// prediction). Only frames predicted at nearly the budget move it. Plain numbers in and out, no
+// clock.
 #ifndef PROM_TRAVERSE_GUARANTEE_H
 #define PROM_TRAVERSE_GUARANTEE_H
 
 #include "metaobj/cut.h"
 #include "traverse/cost.h"
+#include "traverse/term_factors.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -29,21 +33,28 @@ typedef struct prom_guarantee_options {
     bool frozen;
 } prom_guarantee_options;
 
-enum { PROM_GUARANTEE_SCORES = 512, PROM_GUARANTEE_FAST = 5 };
+enum { PROM_GUARANTEE_SCORES = 512, PROM_GUARANTEE_FAST = 11 };
 
 typedef struct prom_guarantee {
     prom_guarantee_options options;
     prom_cost_model device, cost; // as calibrated; with the factors of the terms
-    double factors[PROM_TERMS];
+    prom_term_factors terms;
     double scale;     // fast: actual / predicted of the last frames
     double margin;    // part of the budget kept back for noise
     double charge_ms; // of the budget, for what is not drawn: selection and the like
     uint64_t frames;  // fed so far
     // More state belongs to guarantee.c.
-    double fast[PROM_GUARANTEE_FAST];    // a ring
-    float scores[PROM_GUARANTEE_SCORES]; // of the frames that move the margin, a ring
-    uint64_t scored;                     // of them so far
-    double quantile;                     // the adaptive one, of the scores
+    struct {
+        double terms_ms[PROM_TERMS]; // as the device's model predicts them
+        double draw_ms;
+    } fast[PROM_GUARANTEE_FAST]; // the last frames, a ring
+    unsigned window;             // of them since the machine last changed its pace
+    int outlier; // the last frame's: 1 far too slow, -1 far too quick, 0 neither
+    float
+        scores[PROM_GUARANTEE_SCORES]; // logarithms, of the frames that move the margin, a ring
+    uint64_t scored;                   // of them so far
+    double quantile;                   // of the recent ones
+    double excess;                     // misses beyond the accepted ones, at least 0
 } prom_guarantee;
 
 // cost: the device's model, copied.

@@ -1,0 +1,228 @@
+#include "traverse/guarantee.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SCALE_MIN 0.25
+#define SCALE_MAX 4.0
+#define MARGIN_MAX 0.75
+
+// Frames predicted at less of what is allowed say nothing about the margin (DESIGN 6).
+#define NEAR_BUDGET 0.9
+// Before so many frames the scale is not known, and what it misses is no noise.
+#define COLD_FRAMES 3
+// A frame further from the expected time than the margin, and than this, is an outlier.
+#define OUTLIER 0.1
+
+// A miss more than accepted adds EXCESS_STEP of the quantile (or of QUANTILE_LEAST) to it, two
+// 3, three 7 times that, and no more are counted, so that the margin comes back once the cause
+// is gone. By simulation (tests/bench/bench_guarantee.c).
+#define EXCESS_STEP 0.25
+#define EXCESS_MAX 3.0
+#define QUANTILE_LEAST 0.1
+
+// Charges follow a slow frame more than a quick one.
+#define CHARGE_UP 0.6
+#define CHARGE_DOWN 0.3
+
+static double sum_of(const double terms[PROM_TERMS])
+{
+    double sum = 0.0;
+    for (int k = 0; k < PROM_TERMS; k++) sum += terms[k];
+    return sum;
+}
+
+static int by_value(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+// ---- the scale
+
+// The k-th frame back, 0 being the last.
+static size_t fast_at(const prom_guarantee *g, unsigned k)
+{
+    return (g->frames - 1 - k) % PROM_GUARANTEE_FAST;
+}
+
+// What that frame would be predicted at now.
+static void predicted_terms(const prom_guarantee *g, unsigned k, double terms[PROM_TERMS])
+{
+    for (int t = 0; t < PROM_TERMS; t++)
+        terms[t] = g->fast[fast_at(g, k)].terms_ms[t] * g->terms.factors[t];
+}
+
+// A median and no mean: a single stalled frame (the scheduler gives the core away for some
+// milliseconds, about every fifteenth frame on a shared machine) must not make the next ones
+// poor. Of two the greater.
+static double scale_of_window(const prom_guarantee *g)
+{
+    float ratios[PROM_GUARANTEE_FAST];
+    for (unsigned k = 0; k < g->window; k++) {
+        double terms[PROM_TERMS];
+        predicted_terms(g, k, terms);
+        ratios[k] = (float)(g->fast[fast_at(g, k)].draw_ms / sum_of(terms));
+    }
+    qsort(ratios, g->window, sizeof *ratios, by_value);
+    return fmin(fmax((double)ratios[g->window / 2], SCALE_MIN), SCALE_MAX);
+}
+
+// Two frames in a row that are far too slow, or far too quick, are no noise but another pace
+// of the machine: what was before them is forgotten.
+static bool changes_pace(prom_guarantee *g, double error)
+{
+    double limit = fmax(-log1p(-g->margin), OUTLIER);
+    int outlier = (error > limit) - (error < -limit);
+    bool changes = outlier && outlier == g->outlier;
+    g->outlier = outlier;
+    return changes;
+}
+
+static void follow(prom_guarantee *g, const prom_guarantee_frame *frame, bool changes)
+{
+    size_t i = g->frames++ % PROM_GUARANTEE_FAST;
+    g->fast[i].draw_ms = frame->draw_ms;
+    for (int t = 0; t < PROM_TERMS; t++)
+        g->fast[i].terms_ms[t] = frame->terms_ms[t] / g->terms.factors[t];
+    if (changes)
+        g->window = 2;
+    else if (g->window < PROM_GUARANTEE_FAST)
+        g->window++;
+}
+
+// ---- the terms
+
+static void learn_terms(prom_guarantee *g, const double terms_ms[PROM_TERMS], double error)
+{
+    double more[PROM_TERMS], total = sum_of(terms_ms);
+    for (int t = 0; t < PROM_TERMS; t++) more[t] = terms_ms[t] / total;
+    for (unsigned k = 0; k < g->window; k++) {
+        double around[PROM_TERMS];
+        predicted_terms(g, k, around);
+        for (int t = 0; t < PROM_TERMS; t++) more[t] -= around[t] / sum_of(around) / g->window;
+    }
+    double noise = fmax(g->quantile, QUANTILE_LEAST) / 2;
+    double usual = fmin(fmax(error, -3 * noise), 3 * noise); // a stall is no news of the scene
+    prom_term_factors_learn(&g->terms, more, usual, noise);
+    g->cost = prom_cost_scaled(&g->device, g->terms.factors);
+}
+
+// ---- the margin
+
+// So many recent scores say what the quantile is: three beyond it.
+static size_t memory(const prom_guarantee *g)
+{
+    double wanted = 3.0 / g->options.miss_rate;
+    return (size_t)fmin(fmax(wanted, 64.0), PROM_GUARANTEE_SCORES);
+}
+
+// The quantile that a further score exceeds with the accepted probability (Vovk et al. 2005;
+// Angelopoulos and Bates 2021, section 1), the calibration's until enough scores are known.
+static double quantile_of_scores(const prom_guarantee *g)
+{
+    double prior = -log1p(-g->device.margin), rate = g->options.miss_rate;
+    size_t limit = memory(g), count = g->scored < limit ? (size_t)g->scored : limit;
+    if (!count) return prior;
+    float sorted[PROM_GUARANTEE_SCORES];
+    for (size_t i = 0; i < count; i++)
+        sorted[i] = g->scores[(g->scored - 1 - i) % PROM_GUARANTEE_SCORES];
+    qsort(sorted, count, sizeof *sorted, by_value);
+    double rank = fmin(ceil((double)(count + 1) * (1 - rate)), (double)count);
+    double seen = (double)sorted[(size_t)rank - 1];
+    double known = fmin(1.0, (double)count / fmin(1 / rate, (double)limit));
+    return known * seen + (1 - known) * fmax(prior, seen);
+}
+
+static void set_margin(prom_guarantee *g)
+{
+    g->quantile = fmax(quantile_of_scores(g), 0.0);
+    double step = EXCESS_STEP * fmax(g->quantile, QUANTILE_LEAST);
+    double log_margin = g->quantile + step * (exp2(g->excess) - 1);
+    g->margin = fmin(-expm1(-log_margin), MARGIN_MAX);
+}
+
+// A change of pace is answered by the scale; its two frames are misses, but no noise.
+static void score(prom_guarantee *g, double log_score, bool changes, bool was_outlier)
+{
+    double miss = log_score > -log1p(-g->margin) ? 1.0 : 0.0;
+    double excess = g->excess + miss - g->options.miss_rate;
+    g->excess = fmin(fmax(excess, 0.0), EXCESS_MAX);
+    if (!changes) {
+        g->scores[g->scored++ % PROM_GUARANTEE_SCORES] = (float)log_score;
+    } else if (was_outlier && g->scored > 0) {
+        g->scored--;
+    }
+    set_margin(g);
+}
+
+// ---- the interface
+
+void prom_guarantee_init(prom_guarantee *g, const prom_cost_model *cost,
+                         const prom_guarantee_options *options)
+{
+    assert(options->miss_rate > 0.0 && options->miss_rate < 1.0);
+    *g = (prom_guarantee){.options = *options, .device = *cost, .cost = *cost, .scale = 1.0};
+    g->device.margin = cost->margin >= 0.0 ? fmin(cost->margin, MARGIN_MAX) : 0.0;
+    prom_term_factors_init(&g->terms);
+    if (options->frozen) {
+        g->margin = g->device.margin;
+        return;
+    }
+    g->excess = 1.0; // begins as if it had just missed
+    set_margin(g);
+}
+
+const prom_cost_model *prom_guarantee_cost(const prom_guarantee *g)
+{
+    return &g->cost;
+}
+
+double prom_guarantee_allowed(const prom_guarantee *g)
+{
+    double left = (g->options.budget_ms - g->charge_ms) / g->scale * (1.0 - g->margin);
+    return fmax(left, 0.0);
+}
+
+double prom_guarantee_expected(const prom_guarantee *g, double predicted_ms)
+{
+    return g->scale * predicted_ms;
+}
+
+double prom_guarantee_least_budget(const prom_guarantee *g, double predicted_ms)
+{
+    return predicted_ms * g->scale / (1.0 - g->margin) + g->charge_ms;
+}
+
+void prom_guarantee_set_budget(prom_guarantee *g, double budget_ms)
+{
+    g->options.budget_ms = budget_ms;
+}
+
+static void learn(prom_guarantee *g, const prom_guarantee_frame *frame, double predicted)
+{
+    double expected = g->scale * predicted;
+    double whole = fmax(frame->draw_ms + frame->other_ms - g->charge_ms, 1e-3 * expected);
+    bool near_budget = predicted >= NEAR_BUDGET * prom_guarantee_allowed(g);
+    bool was_outlier = g->outlier != 0, known = g->frames >= COLD_FRAMES;
+    double error = log(frame->draw_ms / expected);
+    bool changes = changes_pace(g, error);
+    if (known && !changes) learn_terms(g, frame->terms_ms, error);
+    follow(g, frame, changes);
+    if (known && near_budget && !frame->aside)
+        score(g, log(whole / expected), changes, was_outlier);
+    g->scale = scale_of_window(g);
+}
+
+void prom_guarantee_feed(prom_guarantee *g, const prom_guarantee_frame *frame)
+{
+    if (g->options.frozen) return;
+    double predicted = sum_of(frame->terms_ms), other = frame->other_ms;
+    bool sound = predicted > 0.0 && isfinite(predicted) && frame->draw_ms > 0.0 &&
+                 isfinite(frame->draw_ms) && isfinite(other) && other >= 0.0;
+    if (!sound) return;
+    learn(g, frame, predicted);
+    g->charge_ms += (other > g->charge_ms ? CHARGE_UP : CHARGE_DOWN) * (other - g->charge_ms);
+}
