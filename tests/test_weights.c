@@ -299,7 +299,7 @@ static void weights_of_one_change_nothing(void **state)
         bench_init(&b, random_u64(&seed), &o);
         float *ones = prom_alloc(b.model.tree_count, sizeof *ones);
         for (uint32_t n = 0; n < b.model.tree_count; n++) ones[n] = 1.0f;
-        prom_selector *plain[8];
+        prom_selector *plain[sizeof b.selectors / sizeof *b.selectors];
         for (size_t i = 0; i < prom_selector_count(); i++)
             plain[i] = prom_selector_create(prom_selector_at(i)->name, &b.model, NULL);
         for (int look = 0; look < 4; look++) {

@@ -5,7 +5,7 @@
 // by those levels and no others, switched at the distance from the eye to the object's centre.
 // Where the artist's engine would drop it, its last level stays. For all other objects, and for
 // clusters, the distance counts in radii.
-#include "traverse/evaluate.h"
+#include "traverse/rule.h"
 #include "traverse/selectors.h"
 
 #include <math.h>
@@ -200,24 +200,19 @@ static uint32_t leaf_option(distance_state *state, uint32_t node)
     return option_of_rep(eval, node, levels[level].rep);
 }
 
+// A closed cluster is beyond its range: its step counts from there.
+static uint32_t choose_level(void *user, uint32_t node)
+{
+    distance_state *state = user;
+    bool cluster = state->eval.model->child_count[node];
+    return cluster ? option_at(state, node, state->step[node] - 1u) : leaf_option(state, node);
+}
+
 static void select_distance(void *pointer, const prom_selection *selection, prom_cut *cut)
 {
     distance_state *state = pointer;
-    prom_eval *eval = &state->eval;
-    state->scale = selection->rule_scale > 0.0f ? selection->rule_scale : 1.0f;
-    prom_eval_run(eval, selection, open_cluster, state);
-    prom_eval_begin_cut(eval, cut);
-    for (uint32_t i = 0; i < eval->visited_count; i++) {
-        uint32_t node = eval->visited[i];
-        const prom_eval_node *n = &eval->nodes[node];
-        if (n->expanded || !n->option_count) continue;
-        // A closed cluster is beyond its range: its step counts from there.
-        uint32_t option = eval->model->child_count[node]
-                              ? option_at(state, node, state->step[node] - 1u)
-                              : leaf_option(state, node);
-        prom_eval_emit(eval, node, option, cut);
-    }
-    prom_eval_end_cut(eval, cut);
+    state->scale = prom_rule_scale(selection);
+    prom_rule_run(&state->eval, selection, open_cluster, choose_level, state, cut);
 }
 
 const prom_selector_class prom_select_distance = {

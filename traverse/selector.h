@@ -50,7 +50,7 @@ typedef struct prom_selector_class {
     void (*select)(void *state, const prom_selection *selection, prom_cut *cut);
 } prom_selector_class;
 
-// All selectors, in the order of the help text: meta, greedy, distance, full, coarsest.
+// All selectors, in the order of the help text.
 size_t prom_selector_count(void);
 const prom_selector_class *prom_selector_at(size_t i);
 const prom_selector_class *prom_selector_class_named(const char *name); // NULL: unknown

@@ -6,6 +6,10 @@
 
 extern const prom_selector_class prom_select_meta;
 extern const prom_selector_class prom_select_greedy;
+extern const prom_selector_class prom_select_funkhouser;
+extern const prom_selector_class prom_select_pixels;
+extern const prom_selector_class prom_select_sse;
+extern const prom_selector_class prom_select_feedback;
 extern const prom_selector_class prom_select_distance;
 extern const prom_selector_class prom_select_full;
 extern const prom_selector_class prom_select_coarsest;
