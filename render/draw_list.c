@@ -267,7 +267,6 @@ static void emit(prom_draw_list *list, const sort_entry *entry)
         last = &list->runs.data[list->runs.count - 1];
     }
     last->count++;
-    last->triangles += submesh->index_count / 3;
     prom_array_push(&list->commands,
                     (draw_command){
                         .count = submesh->index_count,
@@ -297,4 +296,31 @@ bool prom_draw_list_has_blended(const prom_draw_list *list)
     // The phase that is drawn last.
     return list->runs.count &&
            list->runs.data[list->runs.count - 1].state.phase == PHASE_BLENDED;
+}
+
+size_t prom_draw_list_length(const prom_draw_list *list)
+{
+    return list->commands.count;
+}
+
+// An item's cost goes to its submeshes by their triangles.
+static double cost_of(const prom_draw_list *list, const sort_entry *entry)
+{
+    const mesh_store *store = &list->renderer->meshes;
+    const prom_draw_item *item = &list->items.data[entry->item];
+    uint32_t all = store->meshes.data[item->mesh].index_count;
+    uint32_t own = store->submeshes.data[entry->submesh].index_count;
+    return all ? (double)item->cost_ms * own / all : 0;
+}
+
+size_t prom_draw_list_part(const prom_draw_list *list, size_t first, double cost_ms)
+{
+    double cost = 0;
+    size_t end = first;
+    while (end < list->entries.count) {
+        cost += cost_of(list, &list->entries.data[end]);
+        if (end > first && cost > cost_ms) break;
+        end++;
+    }
+    return end;
 }

@@ -66,6 +66,7 @@ static void add_node(prom_draw_list *list, const prom_model *model, const prom_c
         .depth = entry->depth,
         .background = node >= model->tree_count,
         .hidden = !(entry->visible_px > 0),
+        .cost_ms = entry->cost_ms,
     };
     for (int i = 0; i < 3; i++) item.origin[i] = (float)(placement->origin[i] - camera->eye[i]);
     memcpy(item.basis, placement->basis, sizeof item.basis);
@@ -98,6 +99,34 @@ static void add_background(prom_draw_list *list, const prom_model *model,
     }
 }
 
+void prom_renderer_prepare_frame(prom_draw_list *list, const prom_model *model,
+                                 const prom_cut *cut, const prom_camera *camera,
+                                 const prom_frame_options *options)
+{
+    prom_draw_list_reset(list);
+    for (size_t i = 0; i < cut->entries.count; i++)
+        add_node(list, model, &cut->entries.data[i], camera, options);
+    if (!options->no_background) add_background(list, model, camera, options);
+    prom_draw_list_prepare(list);
+}
+
+void prom_renderer_submit_frame(prom_draw_list *list, prom_target *target,
+                                const prom_camera *camera, const prom_frame_options *options,
+                                size_t first, size_t end)
+{
+    const uint32_t *size = options->size_px;
+    prom_pass pass = {.width = size[0] ? size[0] : camera->width,
+                      .height = size[1] ? size[1] : camera->height,
+                      .output = options->output,
+                      .ids = options->ids,
+                      .wireframe = options->wireframe,
+                      .first = first,
+                      .end = end};
+    prom_camera_projection(camera, pass.projection);
+    if (!first) target_clear(target, prom_sky_color, options->ids != PROM_IDS_NONE);
+    prom_draw_list_submit(list, target, &pass);
+}
+
 void prom_renderer_draw_frame(prom_renderer *renderer, prom_draw_list *list,
                               prom_target *target, const prom_model *model, const prom_cut *cut,
                               const prom_camera *camera, const prom_frame_options *options)
@@ -106,17 +135,6 @@ void prom_renderer_draw_frame(prom_renderer *renderer, prom_draw_list *list,
     assert(list->renderer == renderer);
     static const prom_frame_options defaults = {0};
     if (!options) options = &defaults;
-    prom_draw_list_reset(list);
-    for (size_t i = 0; i < cut->entries.count; i++)
-        add_node(list, model, &cut->entries.data[i], camera, options);
-    if (!options->no_background) add_background(list, model, camera, options);
-    prom_draw_list_prepare(list);
-    prom_pass pass = {.width = camera->width,
-                      .height = camera->height,
-                      .output = options->output,
-                      .ids = options->ids,
-                      .wireframe = options->wireframe};
-    prom_camera_projection(camera, pass.projection);
-    target_clear(target, prom_sky_color, options->ids != PROM_IDS_NONE);
-    prom_draw_list_submit(list, target, &pass);
+    prom_renderer_prepare_frame(list, model, cut, camera, options);
+    prom_renderer_submit_frame(list, target, camera, options, 0, 0);
 }

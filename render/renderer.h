@@ -76,6 +76,7 @@ typedef struct prom_draw_item {
     float depth;      // draw order: ascending, blended ones descending
     bool background;  // behind everything else, whatever its depth
     bool hidden;      // not expected to show: drawn after all opaque ones that are
+    float cost_ms;    // predicted; only prom_draw_list_part looks at it
 } prom_draw_item;
 
 typedef struct prom_draw_list prom_draw_list;
@@ -90,6 +91,11 @@ void prom_draw_list_add(prom_draw_list *list, const prom_draw_item *item);
 void prom_draw_list_prepare(prom_draw_list *list);
 // Whether a prepared list has something blended, the background aside.
 bool prom_draw_list_has_blended(const prom_draw_list *list);
+// Draws of a prepared list, numbered in the order of drawing.
+size_t prom_draw_list_length(const prom_draw_list *list);
+// Where the part that starts at draw `first` ends, so that what it holds of the items costs
+// cost_ms at most; it holds one draw at least.
+size_t prom_draw_list_part(const prom_draw_list *list, size_t first, double cost_ms);
 
 typedef struct prom_pass {
     mat4 projection;              // clip from eye-relative world; reverse z
@@ -97,10 +103,13 @@ typedef struct prom_pass {
     prom_output output;
     prom_ids ids;
     bool wireframe;
+    size_t first, end; // the draws, see prom_draw_list_part; end 0: to the last one
 } prom_pass;
 
 // Binds and clears the whole target: colour (sRGB RGBA bytes), depth, ids to PROM_NONE.
 void prom_target_clear(prom_target *target, const uint8_t rgba[4]);
+// Copies another target's colours all over this one's, scaled where the sizes differ (linear).
+void prom_target_copy_colors(prom_target *target, const prom_target *from);
 // Draws a prepared list into the bound target. May be called many times (one per baked view).
 // Alpha of drawn pixels is 1 for the tree, and stays the clear's under the background layer.
 void prom_draw_list_submit(prom_draw_list *list, prom_target *target, const prom_pass *pass);
@@ -123,6 +132,7 @@ typedef struct prom_frame_options {
     prom_ids ids;
     bool wireframe;
     bool no_background;
+    uint32_t size_px[2]; // drawn so large, from the target's bottom left; 0: as the camera says
 } prom_frame_options;
 
 // Draws the cut and the background layer of a loaded model from a camera: fills the list,
@@ -130,6 +140,16 @@ typedef struct prom_frame_options {
 void prom_renderer_draw_frame(prom_renderer *renderer, prom_draw_list *list,
                               prom_target *target, const prom_model *model, const prom_cut *cut,
                               const prom_camera *camera, const prom_frame_options *options);
+// The same in two steps, for frames that are drawn in parts: the list is filled and prepared;
+// then its draws [first, end) are submitted, in one go or in parts that follow each other with
+// whatever time between. The first part clears the target. The same draws in the same order
+// give the same pixels.
+void prom_renderer_prepare_frame(prom_draw_list *list, const prom_model *model,
+                                 const prom_cut *cut, const prom_camera *camera,
+                                 const prom_frame_options *options);
+void prom_renderer_submit_frame(prom_draw_list *list, prom_target *target,
+                                const prom_camera *camera, const prom_frame_options *options,
+                                size_t first, size_t end);
 
 // The clear colour where nothing is drawn.
 extern const uint8_t prom_sky_color[4];

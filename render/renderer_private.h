@@ -44,7 +44,6 @@ typedef struct draw_state {
 typedef struct draw_run {
     draw_state state;
     uint32_t first, count; // of the commands
-    uint64_t triangles;
 } draw_run;
 
 typedef struct sort_entry {

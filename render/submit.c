@@ -10,7 +10,8 @@ typedef struct submission {
     const prom_target *target;
     const prom_pass *pass;
     look look;
-    bool ids; // are written, by some
+    bool ids;          // are written, by some
+    size_t first, end; // of the draws
     float eye[4];
 } submission;
 
@@ -79,15 +80,19 @@ static void bind_framebuffer(const submission *s)
     glBindFramebuffer(GL_FRAMEBUFFER, s->ids ? s->target->framebuffer : s->target->plain);
 }
 
+// What of the run is in the part that is drawn.
 static void draw_run_as(const submission *s, const draw_run *run, pipeline p)
 {
+    size_t first = run->first > s->first ? run->first : s->first;
+    size_t end = run->first + run->count < s->end ? run->first + run->count : s->end;
+    if (first >= end) return;
     use_program(s, p);
     use_texture(s, &run->state);
     set_switch(GL_CULL_FACE, !run->state.double_sided);
     glFrontFace(run->state.mirrored ? GL_CW : GL_CCW);
     glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT,
-                                (const void *)(run->first * sizeof(draw_command)),
-                                (GLsizei)run->count, 0);
+                                (const void *)(first * sizeof(draw_command)),
+                                (GLsizei)(end - first), 0);
     s->renderer->stats.calls++;
 }
 
@@ -168,13 +173,14 @@ static void set_common_state(const submission *s)
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, s->list->command_buffer.name);
 }
 
+// Vertices are those of whole meshes: the first part counts them all.
 static void count_stats(const submission *s)
 {
     prom_draw_stats *stats = &s->renderer->stats;
-    stats->draws += s->list->commands.count;
-    stats->vertices += s->list->vertices;
-    for (size_t i = 0; i < s->list->runs.count; i++)
-        stats->triangles += s->list->runs.data[i].triangles;
+    stats->draws += s->end - s->first;
+    if (!s->first) stats->vertices += s->list->vertices;
+    for (size_t i = s->first; i < s->end; i++)
+        stats->triangles += s->list->commands.data[i].count / 3;
 }
 
 void prom_draw_list_submit(prom_draw_list *list, prom_target *target, const prom_pass *pass)
@@ -185,7 +191,9 @@ void prom_draw_list_submit(prom_draw_list *list, prom_target *target, const prom
                     .target = target,
                     .pass = pass,
                     .look = look_of_output(pass->output),
-                    .ids = target->has_ids && pass->ids != PROM_IDS_NONE};
+                    .ids = target->has_ids && pass->ids != PROM_IDS_NONE,
+                    .first = pass->first,
+                    .end = pass->end ? pass->end : list->commands.count};
     list->renderer->submits++;
     find_eye(pass, s.eye);
     set_common_state(&s);
