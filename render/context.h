@@ -27,11 +27,14 @@ prom_target *prom_target_create(uint32_t width, uint32_t height, bool with_ids,
                                 prom_error *error);
 void prom_target_destroy(prom_target *target);
 // Reads a rectangle back, first row on top; x and y count from the bottom left, as in
-// prom_pass. rgba: 4 bytes a pixel, sRGB-encoded; ids: 1 word a
-// pixel. Waits for the drawing to end.
+// prom_pass. rgba: 4 bytes a pixel, sRGB-encoded; ids: 1 word a pixel; depth: near / distance
+// along the view, 0 where nothing is, the background layer's times 2^-40. Waits for the drawing
+// to end.
 void prom_target_read_rgba(prom_target *target, uint32_t x, uint32_t y, uint32_t width,
                            uint32_t height, uint8_t *rgba);
 void prom_target_read_ids(prom_target *target, uint32_t x, uint32_t y, uint32_t width,
                           uint32_t height, uint32_t *ids);
+void prom_target_read_depth(prom_target *target, uint32_t x, uint32_t y, uint32_t width,
+                            uint32_t height, float *depth);
 
 #endif

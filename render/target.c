@@ -150,3 +150,10 @@ void prom_target_read_ids(prom_target *target, uint32_t x, uint32_t y, uint32_t 
     read_pixels(target, GL_COLOR_ATTACHMENT1, GL_RED_INTEGER, GL_UNSIGNED_INT, x, y, width,
                 height, ids);
 }
+
+void prom_target_read_depth(prom_target *target, uint32_t x, uint32_t y, uint32_t width,
+                            uint32_t height, float *depth)
+{
+    read_pixels(target, GL_COLOR_ATTACHMENT0, GL_DEPTH_COMPONENT, GL_FLOAT, x, y, width, height,
+                depth);
+}
