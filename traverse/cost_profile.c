@@ -14,12 +14,15 @@
 #include <unistd.h>
 
 #define FORMAT "promenade-cost-profile"
-#define VERSION 2
+#define VERSION 3
+#define OLDEST_VERSION 2 // without form, bind_ms and upload_ms
 #define FILE_BYTES_MAX 65536
 #define SIDE_MAX 65536
 
 static const char *const shading_keys[PROM_COST_KINDS] = {
     "plain", "textured", "masked", "blended", "impostor", "impostor_lit"};
+
+static const char *const form_names[PROM_COST_FORMS] = {"sum", "max"};
 
 typedef struct field {
     const char *key;
@@ -37,8 +40,9 @@ static const field fields[] = {
     FIELD(edge_ms, 0.0, 1e6),         FIELD(hidden_edge_ms, 0.0, 1e6),
     FIELD(hidden_pixel_ms, 0.0, 1e6), FIELD(mean_error, 0.0, 1e6),
     FIELD(worst_under, 0.0, 1e6),     FIELD(margin, 0.0, 0.9),
+    FIELD(bind_ms, 0.0, 1e6),         FIELD(upload_ms, 0.0, 1e6),
 };
-enum { FIELD_COUNT = sizeof fields / sizeof *fields };
+enum { FIELD_COUNT = sizeof fields / sizeof *fields, OLDEST_FIELD_COUNT = FIELD_COUNT - 2 };
 
 // ---- saving
 
@@ -67,6 +71,7 @@ static json_t *to_json(const prom_cost_model *model)
     json_object_set_new(root, "format", json_string(FORMAT));
     json_object_set_new(root, "version", json_integer(VERSION));
     json_object_set_new(root, "renderer", json_string(renderer));
+    json_object_set_new(root, "form", json_string(form_names[model->form]));
     json_object_set_new(root, "sample_count", json_integer(model->sample_count));
     if (model->width && model->height) {
         json_object_set_new(root, "width", json_integer(model->width));
@@ -138,6 +143,7 @@ static const char *model_fault(const prom_cost_model *model)
     }
     for (int k = 0; k < PROM_COST_KINDS; k++)
         if (!in_range(model->pixel_ms[k], 0.0, 1e6)) return "pixel_ms";
+    if ((int)model->form < 0 || model->form >= PROM_COST_FORMS) return "form";
     return NULL;
 }
 
@@ -164,13 +170,38 @@ static bool get_size(const json_t *root, prom_cost_model *model, size_t *keys)
     return true;
 }
 
+static bool get_form(const json_t *root, prom_cost_model *model)
+{
+    const char *name = json_string_value(json_object_get(root, "form"));
+    for (int form = 0; name && form < PROM_COST_FORMS; form++)
+        if (!strcmp(name, form_names[form])) {
+            model->form = (prom_cost_form)form;
+            return true;
+        }
+    return false;
+}
+
+static bool get_fields(const json_t *root, int count, prom_cost_model *model,
+                       const char **fault)
+{
+    for (int i = 0; i < count; i++) {
+        double value;
+        *fault = fields[i].key;
+        if (!get_number(root, fields[i].key, &value)) return false;
+        memcpy((char *)model + fields[i].offset, &value, sizeof value);
+    }
+    return true;
+}
+
 // The first key that is missing, of a wrong type or out of range, or NULL.
 static const char *from_json(const json_t *root, prom_cost_model *model)
 {
     const char *format = json_string_value(json_object_get(root, "format"));
     if (!format || strcmp(format, FORMAT)) return "format";
     const json_t *version = json_object_get(root, "version");
-    if (!json_is_integer(version) || json_integer_value(version) != VERSION) return "version";
+    json_int_t number = json_integer_value(version);
+    if (!json_is_integer(version) || number < OLDEST_VERSION || number > VERSION)
+        return "version";
     const char *renderer = json_string_value(json_object_get(root, "renderer"));
     if (!renderer || strlen(renderer) >= sizeof model->renderer) return "renderer";
     memcpy(model->renderer, renderer, strlen(renderer) + 1);
@@ -178,17 +209,17 @@ static const char *from_json(const json_t *root, prom_cost_model *model)
     json_int_t count = json_integer_value(samples);
     if (!json_is_integer(samples) || count < 0 || count > UINT32_MAX) return "sample_count";
     model->sample_count = (uint32_t)count;
-    for (int i = 0; i < FIELD_COUNT; i++) {
-        double value;
-        if (!get_number(root, fields[i].key, &value)) return fields[i].key;
-        memcpy((char *)model + fields[i].offset, &value, sizeof value);
-    }
+    bool old = number == OLDEST_VERSION;
+    size_t keys = (size_t)(old ? OLDEST_FIELD_COUNT : FIELD_COUNT);
+    const char *fault;
+    if (!get_fields(root, (int)keys, model, &fault)) return fault;
+    if (!old && !get_form(root, model)) return "form";
     const json_t *pixel = json_object_get(root, "pixel_ms");
     if (json_object_size(pixel) != PROM_COST_KINDS) return "pixel_ms";
     for (int k = 0; k < PROM_COST_KINDS; k++)
         if (!get_number(pixel, shading_keys[k], &model->pixel_ms[k])) return "pixel_ms";
     // format, version, renderer, sample_count and pixel_ms are the other five.
-    size_t keys = FIELD_COUNT + 5;
+    keys += old ? 5 : 6; // and form
     if (!get_size(root, model, &keys)) return "width and height";
     if (json_object_size(root) != keys) return "a key that nobody knows";
     return model_fault(model);
