@@ -1,21 +1,11 @@
 #include "app/bench_report.h"
 
+#include "app/guarantee_report.h"
 #include "app/statistics.h"
 #include "app/swap_report.h"
 #include "metaobj/base/threads.h"
 
-#include <errno.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-static json_t *spread_json(const prom_spread *spread)
-{
-    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o}", "mean", prom_json_number(spread->mean),
-                     "p50", prom_json_number(spread->p50), "p95", prom_json_number(spread->p95),
-                     "p99", prom_json_number(spread->p99), "max", prom_json_number(spread->max),
-                     "std", prom_json_number(spread->std));
-}
 
 static json_t *pair_json(const char *a, double x, const char *b, double y)
 {
@@ -83,6 +73,7 @@ static void set_what(json_t *run, const prom_run_facts *f)
     set(run, "weights", prom_json_text(prom_weight_names(s->choice.weights, weights)));
     set(run, "order", prom_json_text(prom_order_name(s->choice.order)));
     set(run, "hysteresis", prom_json_number(s->choice.hysteresis));
+    set(run, "max_switches", json_integer(s->choice.max_switches));
     set(run, "device", device_json(s));
     set(run, "program", prom_json_text("promenade " PROM_VERSION));
 }
@@ -90,12 +81,6 @@ static void set_what(json_t *run, const prom_run_facts *f)
 static void set_found(json_t *run, const prom_run_facts *f, const prom_run_statistics *t)
 {
     const prom_loop_result *r = f->result;
-    set(run, "frame_ms", spread_json(&t->frame_ms));
-    set(run, "miss_rate", prom_json_number(t->miss_rate));
-    set(run, "misses",
-        json_pack("{s:i, s:i}", "count", (int)t->misses, "longest_run",
-                  (int)t->longest_misses));
-    set(run, "use_of_budget", prom_json_number(t->use_of_budget));
     set(run, "select_ms", pair_json("mean", t->select_ms.mean, "p99", t->select_ms.p99));
     set(run, "triangles", mean_json(t->triangles));
     set(run, "draws", mean_json(t->draws));
@@ -117,83 +102,37 @@ static void set_found(json_t *run, const prom_run_facts *f, const prom_run_stati
     set(run, "memory_mb", pair_json("start", r->memory_start_mb, "end", r->memory_end_mb));
 }
 
+static prom_budget_report budget_report(const prom_run_facts *f)
+{
+    return prom_budget_report_of(f->result, f->options->budget_ms);
+}
+
 static prom_run_statistics statistics(const prom_run_facts *f)
 {
-    return prom_run_statistics_of(f->result->frames.data, f->result->frames.count,
-                                  f->options->budget_ms);
+    return prom_run_statistics_of(f->result->frames.data, f->result->frames.count);
 }
 
 json_t *prom_bench_json(const prom_run_facts *facts)
 {
     prom_run_statistics t = statistics(facts);
+    prom_budget_report budget = budget_report(facts);
     json_t *run = json_object();
     set_what(run, facts);
+    prom_guarantee_add_json(run, facts, &budget);
     set_found(run, facts, &t);
     return json_pack("{s:[o]}", "runs", run);
-}
-
-// An empty field where a frame was not compared.
-static void put_share(FILE *out, bool checked, double share)
-{
-    if (checked)
-        fprintf(out, ",%.6f", share);
-    else
-        fputc(',', out);
-}
-
-static void put_row(FILE *out, size_t frame, double budget_ms, const prom_frame_record *r)
-{
-    fprintf(out, "%zu,%.4f,%g,%.4f,%.4f,%.4f,%.0f,%.0f,%u,%u,%.1f,%.1f,%d", frame, r->t_s,
-            budget_ms, r->frame_ms, r->select_ms, r->predicted_ms, r->triangles, r->draws,
-            r->cut_nodes, r->switches.count, r->benefit_px, r->loss_px, r->feasible);
-    const prom_difference *d = &r->difference;
-    bool quality = d->found & PROM_COMPARE_QUALITY;
-    put_share(out, d->found & PROM_COMPARE_HOLES, d->holes);
-    put_share(out, d->found & PROM_COMPARE_ACCURACY, d->accuracy);
-    put_share(out, true, prom_predicted_accuracy(r));
-    put_share(out, quality, d->flip);
-    put_share(out, quality, d->loss);
-    put_share(out, quality, d->hidden_cost);
-    put_share(out, quality, d->hidden_nodes);
-    fputc('\n', out);
-}
-
-prom_status prom_bench_write_csv(const char *path, const prom_loop_options *options,
-                                 const prom_loop_result *result, prom_error *error)
-{
-    char *text = NULL;
-    size_t bytes = 0;
-    FILE *out = open_memstream(&text, &bytes);
-    if (!out) return prom_fail(error, PROM_ERR_OUTPUT, "%s: %s", path, strerror(errno));
-    fputs("frame,t_s,budget_ms,frame_ms,select_ms,predicted_ms,triangles,draws,cut_nodes,"
-          "switches,benefit_px,loss_px,feasible,holes,accuracy,predicted_accuracy,flip,loss,"
-          "hidden_cost,"
-          "hidden_nodes\n",
-          out);
-    for (size_t i = 0; i < result->frames.count; i++)
-        put_row(out, i, options->budget_ms, &result->frames.data[i]);
-    prom_status status = PROM_OK;
-    if (fclose(out) != 0)
-        status = prom_fail(error, PROM_ERR_OUTPUT, "%s: %s", path, strerror(errno));
-    else
-        status = prom_output_write(path, text, bytes, error);
-    free(text); // from the C library
-    return status;
 }
 
 void prom_bench_print(const prom_run_facts *facts)
 {
     const prom_loop_result *r = facts->result;
     prom_run_statistics t = statistics(facts);
+    prom_budget_report budget = budget_report(facts);
     printf("scene      %s, path %s, %zu frames at %ux%u\n", facts->scene, facts->path,
            r->frames.count, facts->session->camera.width, facts->session->camera.height);
     printf("selector   %s, budget %g ms, visibility %s\n", facts->options->selector,
            facts->options->budget_ms, prom_visibility_mode_name(facts->session->visibility));
-    printf("frame      mean %.1f ms, p50 %.1f, p95 %.1f, p99 %.1f, max %.1f, std %.1f\n",
-           t.frame_ms.mean, t.frame_ms.p50, t.frame_ms.p95, t.frame_ms.p99, t.frame_ms.max,
-           t.frame_ms.std);
-    printf("misses     %.1f %% (%u, longest run %u), use of budget %.0f %%\n",
-           100 * t.miss_rate, t.misses, t.longest_misses, 100 * t.use_of_budget);
+    prom_guarantee_print(facts, &budget);
     printf("select     mean %.2f ms, p99 %.2f\n", t.select_ms.mean, t.select_ms.p99);
     printf("drawn      %.0f triangles, %.0f nodes; loss %.0f px of %.0f\n", t.triangles,
            t.cut_nodes, t.loss_px, t.loss_px + t.benefit_px);

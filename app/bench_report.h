@@ -19,9 +19,9 @@ typedef struct prom_run_facts {
 // {"runs": [{...}]}, one object a run:
 //   scene, path, frames, warmup_frames, resolution, budget_ms, selector, device, program: what
 //     was run and where
-//   frame_ms: mean, p50, p95, p99, max, std; select_ms: mean, p99
-//   miss_rate, misses: count, longest_run; use_of_budget: mean frame time / budget
-//   weights, order (`--benefit`), hysteresis: as the cuts were chosen
+//   frame_ms and how the frames kept to the budget: see app/guarantee_report.h
+//   weights, order (`--benefit`), hysteresis, max_switches: as the cuts were chosen
+//   select_ms: mean, p99
 //   triangles, draws, cut_nodes, benefit, loss (pixels times weights): means over the frames
 //   switches: mean of the nodes that a frame shows by something else than the frame before; px:
 //     of the pixels that these show
@@ -34,10 +34,6 @@ typedef struct prom_run_facts {
 //   swap: see app/swap_report.h; oracle: see app/oracle.h; null if not asked for
 //   start_s, calibration_s, memory_mb: start, end
 json_t *prom_bench_json(const prom_run_facts *facts);
-// One row a frame, units in the header; holes and accuracy are empty where a frame was not
-// compared.
-prom_status prom_bench_write_csv(const char *path, const prom_loop_options *options,
-                                 const prom_loop_result *result, prom_error *error);
 void prom_bench_print(const prom_run_facts *facts);
 
 #endif

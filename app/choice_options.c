@@ -4,7 +4,14 @@
 
 #include <string.h>
 
-enum { KEY_WEIGHTS = 0x3000, KEY_WEIGHT, KEY_BENEFIT, KEY_PRIOR, KEY_HYSTERESIS };
+enum {
+    KEY_WEIGHTS = 0x3000,
+    KEY_WEIGHT,
+    KEY_BENEFIT,
+    KEY_PRIOR,
+    KEY_HYSTERESIS,
+    KEY_MAX_SWITCHES
+};
 
 static const struct argp_option options[] = {
     {"weights", KEY_WEIGHTS, "none|LIST", 0,
@@ -29,6 +36,10 @@ static const struct argp_option options[] = {
     {"hysteresis", KEY_HYSTERESIS, "X", 0,
      "For `meta` and `greedy`: what an object was drawn by in the last frame counts this part "
      "of its pixels more, so that less changes while the camera moves (0; `walk`: 0.05)",
+     0},
+    {"max-switches", KEY_MAX_SWITCHES, "N", 0,
+     "At most N objects in view are drawn in another way than in the last frame, as far as the "
+     "budget allows (0: any number)",
      0},
     {0},
 };
@@ -136,6 +147,10 @@ static error_t parse(int key, char *text, struct argp_state *state)
         break;
     case KEY_HYSTERESIS:
         o->hysteresis = prom_option_number(state, "--hysteresis", text, 0, 1);
+        break;
+    case KEY_MAX_SWITCHES:
+        o->max_switches =
+            (uint32_t)prom_option_whole(state, "--max-switches", text, 0, 1000000);
         break;
     default:
         return ARGP_ERR_UNKNOWN;

@@ -15,6 +15,7 @@ typedef struct prom_choice_options {
     prom_order order;
     unsigned priors; // prom_prior flags
     double hysteresis;
+    uint32_t max_switches; // from one cut to the next; 0: any number
 } prom_choice_options;
 
 // Input: prom_choice_options; part of the view's options.

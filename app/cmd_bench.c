@@ -1,4 +1,5 @@
 // promenade bench: walks a path within a budget and reports every frame.
+#include "app/bench_csv.h"
 #include "app/bench_report.h"
 #include "app/command.h"
 #include "app/output.h"
@@ -32,6 +33,7 @@ enum {
     KEY_HOLES,
     KEY_ACCURACY,
     KEY_QUALITY,
+    KEY_NOISE_FLOOR,
     KEY_SWAP_TEST,
     KEY_SWAPS,
     KEY_SWAP_CSV,
@@ -62,6 +64,10 @@ static const struct argp_option options[] = {
      "On N frames also draw full detail and report how different the picture looks (mean "
      "FLIP), the share of visible pixels lost, and the shares of cost and nodes that show no "
      "pixel (20)",
+     1},
+    {"noise-floor", KEY_NOISE_FLOOR, "N", 0,
+     "Draw one cut that takes about the budget N times between the walk's frames, and report "
+     "how even these are beside how even the walk's are (300, say)",
      1},
     {"swap-test", KEY_SWAP_TEST, "N", 0,
      "After the walk, in N of its views draw one entry of the cut at a time in another way, "
@@ -121,6 +127,10 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case KEY_QUALITY:
         o->loop.quality_frames =
             (uint32_t)prom_option_whole(state, "--quality-frames", text, 0, 100000);
+        break;
+    case KEY_NOISE_FLOOR:
+        o->loop.noise_floor =
+            (uint32_t)prom_option_whole(state, "--noise-floor", text, 0, 100000);
         break;
     case KEY_SWAP_TEST:
         o->swap_frames = (uint32_t)prom_option_whole(state, "--swap-test", text, 1, 100000);

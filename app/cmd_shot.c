@@ -4,7 +4,6 @@
 #include "app/sight.h"
 
 #include "metaobj/base/log.h"
-#include "traverse/governor.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -114,9 +113,7 @@ static prom_status draw(const shot_options *o, prom_session *session, prom_error
         prom_path_pose(&session->path, o->frame, &camera);
     }
     const prom_selector_class *class = prom_selector_class_named(o->view.selector);
-    prom_governor governor;
-    prom_governor_init(&governor, session->cost.margin);
-    double allowed = budgeted ? prom_governor_budget(&governor, o->view.budget_ms) : INFINITY;
+    double allowed = budgeted ? prom_session_allowed_ms(session, o->view.budget_ms) : INFINITY;
     prom_sight sight;
     prom_cut cut = {0};
     prom_status status = prom_sight_init(&sight, session, error);

@@ -95,7 +95,7 @@ static void report(const walk_options *o, const prom_walk_result *r)
     double to[3];
     prom_walk_look_at(&r->camera, to);
     printf("%s: %llu frames of %u x %u, %s: mean %.2f ms, worst %.2f ms, %llu over %g ms; "
-           "showing one took %.2f ms more\n",
+           "showing one took %.2f ms of it\n",
            o->model, (unsigned long long)r->frames, r->camera.width, r->camera.height,
            o->walk.selector, r->frame_ms, r->worst_ms, (unsigned long long)r->misses,
            o->walk.budget_ms, r->present_ms);

@@ -1,16 +1,19 @@
 #include "app/frame_step.h"
 
 #include "metaobj/base/clock.h"
+#include "metaobj/base/hash.h"
 
+#include <math.h>
 #include <string.h>
 
 prom_status prom_frame_step_init(prom_frame_step *step, prom_session *session,
                                  const char *selector, double budget_ms, double rule_scale,
                                  prom_error *error)
 {
-    *step = (prom_frame_step){
-        .session = session, .budget_ms = budget_ms, .rule_scale = rule_scale};
-    prom_governor_init(&step->governor, session->cost.margin);
+    *step = (prom_frame_step){.session = session, .rule_scale = rule_scale};
+    const prom_guarantee_options options = {
+        .budget_ms = budget_ms, .miss_rate = session->miss_rate, .frozen = session->frozen};
+    prom_guarantee_init(&step->guarantee, &session->cost, &options);
     prom_last_cut_init(&step->last, &session->model);
     step->selector = prom_selector_create(selector, &session->model, error);
     prom_status status = step->selector ? PROM_OK : error->status;
@@ -40,12 +43,40 @@ static prom_switches choose(prom_frame_step *step, const prom_camera *camera, do
     prom_view_init(&step->view, camera);
     prom_selection selection = prom_session_selection(
         step->session, &step->view, step->sight.visibility, allowed_ms, step->rule_scale);
+    selection.cost = prom_guarantee_cost(&step->guarantee);
+    selection.measured_ms = step->measured_ms;
+    selection.certify = step->certify;
     selection.last = &step->last;
     if (step->last.number) selection.weighting.before = &before;
-    if (same_pose(&before.camera, camera)) selection.hysteresis = 0.0f;
+    if (same_pose(&before.camera, camera)) {
+        selection.hysteresis = 0.0f;
+        selection.max_switches = 0;
+    }
     selection.weighting.dt_s = step->dt_s;
     prom_selector_run(step->selector, &selection, &step->cut);
     return prom_last_cut_note(&step->last, &step->cut);
+}
+
+static uint64_t hash_of(const prom_cut *cut)
+{
+    uint64_t hash = 0;
+    for (size_t i = 0; i < cut->entries.count; i++) {
+        const prom_cut_entry *e = &cut->entries.data[i];
+        const uint32_t choice[2] = {e->node, e->rep};
+        hash = prom_hash(choice, sizeof choice, hash);
+    }
+    return hash;
+}
+
+// What the cut says of itself.
+static void describe(const prom_cut *cut, prom_frame_record *record)
+{
+    record->benefit_px = cut->benefit;
+    record->loss_px = cut->loss;
+    record->gap = NAN;
+    record->cut_nodes = (uint32_t)cut->entries.count;
+    record->cut_hash = hash_of(cut);
+    record->limited = cut->limited;
 }
 
 // What the frame may be predicted at, and what its prediction is corrected by, are those of its
@@ -54,10 +85,10 @@ prom_frame_record prom_frame_step_draw(prom_frame_step *step, const prom_camera 
                                        double start_ms)
 {
     prom_session *s = step->session;
+    const prom_guarantee *guarantee = &step->guarantee;
     prom_frame_options plain = {0};
-    double ratio = step->governor.ratio;
 
-    double allowed = prom_governor_budget(&step->governor, step->budget_ms);
+    double allowed = prom_guarantee_allowed(guarantee);
     prom_sight_begin(&step->sight, camera);
     prom_switches switches = choose(step, camera, allowed);
     double selected = prom_clock_ms();
@@ -66,23 +97,33 @@ prom_frame_record prom_frame_step_draw(prom_frame_step *step, const prom_camera 
 
     prom_draw_stats stats = prom_renderer_take_stats(s->renderer);
     prom_frame_record record = {
+        .start_ms = start_ms,
         .frame_ms = end - start_ms,
         .select_ms = selected - start_ms,
         .draw_ms = end - selected,
-        .predicted_ms = step->cut.predicted_ms * ratio,
+        .predicted_ms = prom_guarantee_expected(guarantee, step->cut.predicted_ms),
+        .allowed_ms = allowed,
+        .scale = guarantee->scale,
+        .margin = guarantee->margin,
         .triangles = (double)stats.triangles,
         .draws = (double)stats.draws,
-        .benefit_px = step->cut.benefit,
-        .loss_px = step->cut.loss,
-        .cut_nodes = (uint32_t)step->cut.entries.count,
         .switches = switches,
         .feasible = step->cut.cmin_ms <= allowed,
     };
+    describe(&step->cut, &record);
     return record;
 }
 
 void prom_frame_step_feed(prom_frame_step *step, const prom_frame_record *record)
 {
-    prom_governor_feed(&step->governor, step->cut.predicted_ms, record->draw_ms,
-                       record->select_ms);
+    // The first frame touches everything for the first time.
+    bool first = !step->measured_ms;
+    prom_guarantee_frame frame = {.draw_ms = record->draw_ms,
+                                  .other_ms = record->select_ms + record->display_ms,
+                                  .aside = record->aside || first};
+    memcpy(frame.terms_ms, step->cut.terms_ms, sizeof frame.terms_ms);
+    prom_guarantee_feed(&step->guarantee, &frame);
+    // A selector that reacts to times gets the expected ones where measured ones must not
+    // count.
+    step->measured_ms = step->session->frozen ? record->predicted_ms : record->frame_ms;
 }

@@ -2,6 +2,7 @@
 
 #include "benefit/flip.h"
 #include "metaobj/base/log.h"
+#include "traverse/guarantee.h"
 #include "traverse/selector.h"
 
 #include <errno.h>
@@ -118,6 +119,7 @@ const struct argp prom_argp_log = {.options = log_options, .parser = parse_log};
 
 const prom_view_options prom_view_options_default = {
     .rule_scale = 1,
+    .miss_rate = PROM_MISS_RATE,
     .fov_degrees = 60,
     .visibility = PROM_SEE_BOTH,
     .size_px = {1280, 720},
@@ -137,6 +139,7 @@ const char *prom_view_path_file(const prom_view_options *view)
 enum {
     KEY_PATH = 0x2000,
     KEY_BUDGET,
+    KEY_MISS_RATE,
     KEY_SELECTOR,
     KEY_RESOLUTION,
     KEY_PROFILE,
@@ -150,6 +153,8 @@ static const struct argp_option view_options[] = {
     {"path", KEY_PATH, "FILE|auto", 0,
      "Camera path; `auto` (the default) derives a walk from the model", 0},
     {"budget-ms", KEY_BUDGET, "MS", 0, "Time that a frame may take", 0},
+    {"miss-rate", KEY_MISS_RATE, "SHARE", 0,
+     "Share of frames that may take longer, from 0.001 to 0.5 (0.01)", 0},
     {"selector", KEY_SELECTOR, "NAME", 0,
      "What chooses the representations: meta, greedy, distance, full or coarsest", 0},
     {"resolution", KEY_RESOLUTION, "W,H", 0, "Size of the picture in pixels (1280,720)", 0},
@@ -168,7 +173,10 @@ static const struct argp_option view_options[] = {
      "(those of the picture filling a screen 0.7 m wide, 0.7 m away: 22.34 for 1280 pixels)",
      0},
     {"profile", KEY_PROFILE, "FILE", 0,
-     "Cost profile from `calibrate`; the default is the device's own, made when missing", 0},
+     "Cost profile from `calibrate`; with it nothing that is measured changes what is drawn: "
+     "the same path has the same cuts in every run. The default is the device's own, made when "
+     "missing, and corrected by what frames take",
+     0},
     {0},
 };
 
@@ -211,6 +219,9 @@ static error_t parse_view(int key, char *text, struct argp_state *state)
         break;
     case KEY_BUDGET:
         o->budget_ms = prom_option_number(state, "--budget-ms", text, 0.01, 1e6);
+        break;
+    case KEY_MISS_RATE:
+        o->miss_rate = prom_option_number(state, "--miss-rate", text, 1e-3, 0.5);
         break;
     case KEY_SELECTOR:
         o->selector = known_selector(state, text);

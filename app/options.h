@@ -52,6 +52,7 @@ typedef struct prom_view_options {
     const char *profile;  // NULL: the device's own
     double budget_ms;     // 0: not given
     double rule_scale;
+    double miss_rate;   // accepted share of frames over the budget
     double fov_degrees; // vertical
     prom_visibility_mode visibility;
     uint32_t size_px[2];

@@ -5,6 +5,7 @@
 #include "builder/image_io.h"
 #include "metaobj/base/clock.h"
 #include "metaobj/base/log.h"
+#include "traverse/guarantee.h"
 
 #include <math.h>
 #include <string.h>
@@ -94,6 +95,8 @@ static prom_status open_all(prom_session *s, const prom_session_device *device,
     uint32_t size_px[2] = {options->size_px[0], options->size_px[1]};
     s->ppd = options->ppd;
     s->choice = options->choice;
+    s->miss_rate = options->miss_rate;
+    s->frozen = options->profile;
     double start = prom_clock_ms();
     // What does not choose by cost and benefit has no use for it.
     if (prom_selector_class_named(options->selector)->uses_cost)
@@ -176,6 +179,23 @@ static float table_px(const prom_session *session)
     return by_angle ? measured->ppd / (float)prom_session_ppd(session) : 1.0f;
 }
 
+double prom_session_allowed_ms(const prom_session *session, double budget_ms)
+{
+    prom_guarantee guarantee;
+    const prom_guarantee_options options = {
+        .budget_ms = budget_ms, .miss_rate = session->miss_rate, .frozen = true};
+    prom_guarantee_init(&guarantee, &session->cost, &options);
+    return prom_guarantee_allowed(&guarantee);
+}
+
+double prom_session_step_s(const prom_session *session)
+{
+    size_t keys = session->path.keys.count;
+    if (keys < 2) return 1.0 / PROM_PATH_RATE;
+    return (session->path.keys.data[keys - 1].t - session->path.keys.data[0].t) /
+           (double)(keys - 1);
+}
+
 prom_selection prom_session_selection(const prom_session *session, const prom_view *view,
                                       const prom_visibility *visibility, double budget_ms,
                                       double rule_scale)
@@ -191,6 +211,7 @@ prom_selection prom_session_selection(const prom_session *session, const prom_vi
         .order = session->choice.order,
         .priors = session->choice.priors,
         .hysteresis = (float)session->choice.hysteresis,
+        .max_switches = session->choice.max_switches,
     };
 }
 

@@ -23,6 +23,8 @@ typedef struct prom_session {
     prom_draw_list *list;
     prom_target *target;
     prom_choice_options choice;
+    double miss_rate;     // accepted share of frames over the budget
+    bool frozen;          // a profile was given: nothing that is measured changes what is drawn
     float *semantics;     // weights of the tree's nodes; NULL: all 1
     prom_cost_model cost; // {0} when nothing is known and neither budget nor selector needs it
     prom_path path;
@@ -55,6 +57,10 @@ prom_status prom_session_resize(prom_session *session, const uint32_t size_px[2]
 // Pixels per degree of the pictures: as given, or those of one that fills the screen 0.7 m wide
 // and 0.7 m away that FLIP's values are usually given for.
 double prom_session_ppd(const prom_session *session);
+// What a cut may be predicted at in a frame of budget_ms before anything has been measured.
+double prom_session_allowed_ms(const prom_session *session, double budget_ms);
+// Seconds from one key of the path to the next.
+double prom_session_step_s(const prom_session *session);
 // What a selector of this session is given. visibility: NULL, or begun for this view.
 prom_selection prom_session_selection(const prom_session *session, const prom_view *view,
                                       const prom_visibility *visibility, double budget_ms,

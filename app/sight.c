@@ -68,7 +68,8 @@ static void feed(prom_sight *s, const prom_id_counts *seen)
     prom_sighting *sighting = &s->sightings[seen->frame % PROM_ID_RING];
     prom_visible_count *counts = sighting->counts.data;
     bool blended = sighting->ids == PROM_IDS_BLENDED;
-    for (size_t i = 0; i < seen->count; i++) s->px[seen->counts[i].id] = seen->counts[i].px;
+    for (size_t i = 0; i < seen->count; i++)
+        s->px[seen->counts[i].id] = sighting->scale * seen->counts[i].px;
     for (size_t i = 0; i < sighting->counts.count; i++)
         counts[i].px = visible_px(s, counts[i].entry.node, blended, seen->frame);
     for (size_t i = 0; i < seen->count; i++) s->px[seen->counts[i].id] = 0.0f;
@@ -78,7 +79,8 @@ static void feed(prom_sight *s, const prom_id_counts *seen)
 void prom_sight_begin(prom_sight *sight, const prom_camera *camera)
 {
     prom_id_counts seen;
-    while (sight->counter && prom_id_counter_take(sight->counter, false, &seen))
+    bool wait = sight->session->frozen;
+    while (sight->counter && prom_id_counter_take(sight->counter, wait, &seen))
         feed(sight, &seen);
     if (sight->visibility) prom_visibility_begin(sight->visibility, camera);
 }
@@ -90,11 +92,20 @@ static bool has_glass(const prom_sight *s, const prom_cut *cut)
     return false;
 }
 
-static void note(prom_sight *s, const prom_cut *cut, prom_ids ids)
+// A picture may be drawn smaller than the camera's.
+static float scale_of(const prom_camera *camera, const prom_frame_options *options)
+{
+    const uint32_t *size = options->size_px;
+    if (!size[0]) return 1.0f;
+    return (float)camera->width * (float)camera->height / ((float)size[0] * (float)size[1]);
+}
+
+static void note(prom_sight *s, const prom_cut *cut, prom_ids ids, float scale)
 {
     prom_sighting *sighting = &s->sightings[s->counted % PROM_ID_RING];
     sighting->frame = s->counted;
     sighting->ids = ids;
+    sighting->scale = scale;
     sighting->counts.count = 0;
     prom_array_reserve(&sighting->counts, cut->entries.count);
     for (size_t i = 0; i < cut->entries.count; i++)
@@ -113,7 +124,7 @@ static prom_ids due_ids(const prom_sight *s, const prom_cut *cut)
     return blended ? PROM_IDS_BLENDED : PROM_IDS_OPAQUE;
 }
 
-static void count(prom_sight *s, const prom_cut *cut, prom_ids ids)
+static void count(prom_sight *s, const prom_cut *cut, prom_ids ids, float scale)
 {
     // The ring is never full here: frames are waited for, and their counts taken.
     if (!prom_id_counter_start(s->counter, s->session->target, s->counted)) {
@@ -123,7 +134,7 @@ static void count(prom_sight *s, const prom_cut *cut, prom_ids ids)
         s->counter = NULL;
         return;
     }
-    note(s, cut, ids);
+    note(s, cut, ids, scale);
     double way = prom_visibility_way(s->visibility);
     if (way - s->way > JUMP_WAY)
         s->in_a_row = COUNT_ALL;
@@ -142,6 +153,7 @@ void prom_sight_draw(prom_sight *sight, const prom_cut *cut, const prom_camera *
     with_ids.ids = due_ids(sight, cut);
     prom_session_submit(s, cut, camera, &with_ids);
     sight->uncounted++;
-    if (with_ids.ids != PROM_IDS_NONE) count(sight, cut, with_ids.ids);
+    if (with_ids.ids != PROM_IDS_NONE)
+        count(sight, cut, with_ids.ids, scale_of(camera, options));
     prom_renderer_finish(s->renderer);
 }

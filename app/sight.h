@@ -13,6 +13,7 @@
 typedef struct prom_sighting {
     uint64_t frame;
     prom_ids ids;
+    float scale; // pixels of the camera's picture for each one drawn
     PROM_ARRAY(prom_visible_count) counts; // its cut; px is filled in when they are known
 } prom_sighting;
 
@@ -39,7 +40,8 @@ typedef struct prom_sight {
 // As the session's visibility mode says. On failure there is nothing to finish.
 prom_status prom_sight_init(prom_sight *sight, prom_session *session, prom_error *error);
 void prom_sight_finish(prom_sight *sight);
-// Takes the counts that have arrived; to be called before the cut is selected.
+// Takes the counts that have arrived, in a frozen session all of the frame before; to be called
+// before the cut is selected.
 void prom_sight_begin(prom_sight *sight, const prom_camera *camera);
 // Draws a cut into the session's target, has its pixels counted, and waits for the picture.
 void prom_sight_draw(prom_sight *sight, const prom_cut *cut, const prom_camera *camera,

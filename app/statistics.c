@@ -27,6 +27,7 @@ prom_spread prom_spread_of(double *values, size_t count)
         .p50 = nearest_rank(values, count, 0.50),
         .p95 = nearest_rank(values, count, 0.95),
         .p99 = nearest_rank(values, count, 0.99),
+        .p999 = nearest_rank(values, count, 0.999),
         .max = values[count - 1],
         .std = sqrt(squares / (double)count),
     };
@@ -79,20 +80,6 @@ double prom_slope(const double *x, const double *y, size_t count)
         xx += x[i] * x[i];
     }
     return xx > 0 ? xy / xx : NAN;
-}
-
-static void add_misses(const prom_frame_record *records, size_t count, double budget_ms,
-                       prom_run_statistics *s)
-{
-    uint32_t run = 0;
-    for (size_t i = 0; i < count; i++) {
-        bool miss = records[i].frame_ms > budget_ms;
-        run = miss ? run + 1 : 0;
-        s->misses += miss;
-        if (run > s->longest_misses) s->longest_misses = run;
-    }
-    s->miss_rate = (double)s->misses / (double)count;
-    s->use_of_budget = s->frame_ms.mean / budget_ms;
 }
 
 static void add_prediction(const prom_frame_record *records, size_t count,
@@ -163,13 +150,10 @@ static void add_quality(const prom_frame_record *records, size_t count, double *
     s->hidden_nodes /= s->quality_frames;
 }
 
-prom_run_statistics prom_run_statistics_of(const prom_frame_record *records, size_t count,
-                                           double budget_ms)
+prom_run_statistics prom_run_statistics_of(const prom_frame_record *records, size_t count)
 {
     prom_run_statistics s = {0};
     double *values = prom_alloc(count, sizeof *values);
-    for (size_t i = 0; i < count; i++) values[i] = records[i].frame_ms;
-    s.frame_ms = prom_spread_of(values, count);
     for (size_t i = 0; i < count; i++) values[i] = records[i].select_ms;
     s.select_ms = prom_spread_of(values, count);
     add_quality(records, count, values, &s);
@@ -183,7 +167,6 @@ prom_run_statistics prom_run_statistics_of(const prom_frame_record *records, siz
         s.switches += records[i].switches.count / (double)count;
         s.switched_px += records[i].switches.px / (double)count;
     }
-    add_misses(records, count, budget_ms, &s);
     add_prediction(records, count, &s);
     add_holes(records, count, &s);
     add_accuracy(records, count, &s);

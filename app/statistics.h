@@ -5,17 +5,15 @@
 #include "app/frame_loop.h"
 
 typedef struct prom_spread {
-    double mean, p50, p95, p99, max; // percentiles by nearest rank
-    double std;                      // of the population
+    double mean, p50, p95, p99, p999, max; // percentiles by nearest rank
+    double std;                            // of the population
 } prom_spread;
 
 typedef struct prom_run_statistics {
-    prom_spread frame_ms, select_ms;
+    prom_spread select_ms;
     double triangles, draws, cut_nodes, benefit_px, loss_px; // means
     double switches, switched_px;                            // means, see prom_switches
-    double miss_rate, use_of_budget; // a miss: frame_ms above the budget
-    uint32_t misses, longest_misses; // the longest run of them
-    double mape, worst_under;        // of predicted_ms: mean |p/a - 1|, greatest a/p - 1
+    double mape, worst_under; // of predicted_ms: mean |p/a - 1|, greatest a/p - 1
     // Of the frames compared with full detail; 0 where there is none.
     uint32_t hole_frames, accuracy_frames, quality_frames;
     double holes_mean, holes_max;
@@ -36,7 +34,6 @@ double prom_slope(const double *x, const double *y, size_t count);
 // nothing is in view.
 double prom_predicted_accuracy(const prom_frame_record *record);
 // records: count >= 1.
-prom_run_statistics prom_run_statistics_of(const prom_frame_record *records, size_t count,
-                                           double budget_ms);
+prom_run_statistics prom_run_statistics_of(const prom_frame_record *records, size_t count);
 
 #endif

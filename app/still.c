@@ -1,18 +1,14 @@
 #include "app/still.h"
 
-#include "traverse/governor.h"
-
 #define SETTLE_FRAMES 8 // until what frames show of each other has settled
 
 prom_status prom_still_init(prom_still *still, prom_session *session,
                             const prom_still_options *options, prom_error *error)
 {
-    prom_governor governor;
-    prom_governor_init(&governor, session->cost.margin);
     uint32_t count = options->views;
     if (count > options->path_frames) count = options->path_frames;
     *still = (prom_still){.session = session, .options = options, .count = count};
-    still->allowed_ms = prom_governor_budget(&governor, options->budget_ms);
+    still->allowed_ms = prom_session_allowed_ms(session, options->budget_ms);
     prom_status status = prom_sight_init(&still->sight, session, error);
     if (status) return status;
     still->selector = prom_selector_create(options->selector, &session->model, error);

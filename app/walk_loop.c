@@ -13,9 +13,9 @@
 #include <string.h>
 #include <unistd.h>
 
-// A picture at rest is drawn again until what the governor knows is of this view only, and
+// A picture at rest is drawn again until what the guarantee knows is of this view only, and
 // what frames show of each other has settled.
-#define SETTLE_FRAMES (PROM_GOVERNOR_FRAMES + 7)
+#define SETTLE_FRAMES (PROM_GUARANTEE_FAST + 7)
 #define REST_WAIT_S 0.25
 // The step after a rest: the time before it was no walking.
 #define FIRST_STEP_S (1.0 / 60)
@@ -141,11 +141,14 @@ static bool is_at_rest(const walk *w)
     return !is_shown(w) || (!w->playing && w->same >= SETTLE_FRAMES);
 }
 
-static void present(walk *w)
+// Returns what showing it took. A device may wait for the screen in it, which is no work; a
+// software rasteriser hands the picture over itself.
+static double present(walk *w)
 {
     double start = prom_clock_ms();
-    prom_window_present(w->window, w->session->target);
-    w->result->present_ms += prom_clock_ms() - start;
+    double copy_ms = prom_window_present(w->window, w->session->target);
+    bool software = prom_context_is_software(w->session->context);
+    return software ? prom_clock_ms() - start : copy_ms;
 }
 
 static void draw(walk *w, double start_ms)
@@ -153,15 +156,17 @@ static void draw(walk *w, double start_ms)
     prom_walk_result *r = w->result;
     w->same = same_view(&w->camera, &w->drawn) ? w->same + 1 : 1;
     prom_frame_record record = prom_frame_step_draw(&w->step, &w->camera, start_ms);
+    if (is_shown(w)) record.display_ms = present(w);
+    record.frame_ms += record.display_ms;
     prom_frame_step_feed(&w->step, &record);
     w->drawn = w->camera;
     bool miss = record.frame_ms > w->options->budget_ms;
     r->frames++;
     r->misses += miss;
     r->frame_ms += record.frame_ms;
+    r->present_ms += record.display_ms;
     r->worst_ms = fmax(r->worst_ms, record.frame_ms);
     prom_walk_title_add(&w->title, record.frame_ms, record.triangles, miss);
-    if (is_shown(w)) present(w);
 }
 
 static void tell(walk *w)
@@ -184,6 +189,7 @@ static prom_status take_turn(walk *w, prom_error *error)
     double start = prom_clock_ms();
     double dt_s = rested ? FIRST_STEP_S : (start - w->last_ms) / 1000;
     w->last_ms = start;
+    if (w->session->frozen && w->options->frames) dt_s = prom_session_step_s(w->session);
     prom_status status = follow_size(w, error);
     if (status) return status;
     w->step.dt_s = dt_s;

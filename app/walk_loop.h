@@ -16,7 +16,7 @@ typedef struct prom_walk_options {
 typedef struct prom_walk_result {
     uint64_t frames, misses;   // a miss: over the budget
     double frame_ms, worst_ms; // mean and greatest
-    double present_ms;         // mean; comes on top of a frame's time
+    double present_ms;         // mean, of a frame's time: showing it
     prom_camera camera;        // the last frame's
 } prom_walk_result;
 

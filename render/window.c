@@ -1,6 +1,7 @@
 #include "render/window.h"
 
 #include "metaobj/base/alloc.h"
+#include "metaobj/base/clock.h"
 #include "metaobj/base/log.h"
 #include "render/context_private.h"
 #include "render/target.h"
@@ -248,12 +249,16 @@ static void copy_to_back(prom_window *w, const prom_target *t, const uint32_t si
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
-void prom_window_present(prom_window *window, prom_target *target)
+double prom_window_present(prom_window *window, prom_target *target)
 {
     uint32_t size[2];
     prom_window_size(window, size);
-    if (!size[0] || !size[1]) return;
+    if (!size[0] || !size[1]) return 0;
+    double start = prom_clock_ms();
     copy_to_back(window, target, size);
+    glFinish();
+    double copied = prom_clock_ms();
     glfwSwapBuffers(window->handle);
     glFinish();
+    return copied - start;
 }

@@ -65,7 +65,8 @@ void prom_window_set_title(prom_window *window, const char *title);
 // Takes what the user did. wait_s > 0: waits that long for something to happen.
 void prom_window_poll(prom_window *window, double wait_s, prom_window_input *input);
 // Shows a target's picture, scaled where the sizes differ (the window may just have changed
-// its), and waits until it is handed over, so that no later frame pays for it.
-void prom_window_present(prom_window *window, prom_target *target);
+// its), and waits until it is handed over, so that no later frame pays for it. Returns the
+// milliseconds of the copy: waiting for the screen is not in it.
+double prom_window_present(prom_window *window, prom_target *target);
 
 #endif

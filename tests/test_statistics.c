@@ -1,6 +1,6 @@
 // LINK: prom_metaobj
 //
-// Statistics of a run: percentiles by nearest rank, misses, prediction errors.
+// Statistics of a run: percentiles by nearest rank, prediction errors.
 #include "app/statistics.c"
 
 #include <setjmp.h>
@@ -45,19 +45,6 @@ static void a_percentile_is_never_between_two_frames(void **state)
     NEAR(s.p95, 30);
 }
 
-static void misses_are_frames_over_the_budget(void **state)
-{
-    (void)state;
-    const double times[] = {9, 10, 11, 12, 13, 10, 14, 9};
-    prom_frame_record records[8] = {0};
-    for (int i = 0; i < 8; i++) records[i].frame_ms = times[i];
-    prom_run_statistics s = prom_run_statistics_of(records, 8, 10);
-    assert_int_equal(s.misses, 4); // a frame that takes the whole budget is none
-    assert_int_equal(s.longest_misses, 3);
-    NEAR(s.miss_rate, 0.5);
-    NEAR(s.use_of_budget, 88.0 / 8 / 10);
-}
-
 static void predictions_are_compared_with_the_drawing(void **state)
 {
     (void)state;
@@ -66,7 +53,7 @@ static void predictions_are_compared_with_the_drawing(void **state)
         {.frame_ms = 99, .draw_ms = 10, .predicted_ms = 5},  // half: took twice as long
         {.frame_ms = 99, .draw_ms = 10, .predicted_ms = 0},  // no prediction
     };
-    prom_run_statistics s = prom_run_statistics_of(records, 3, 10);
+    prom_run_statistics s = prom_run_statistics_of(records, 3);
     NEAR(s.mape, (0.2 + 0.5) / 2);
     NEAR(s.worst_under, 1.0);
 }
@@ -83,7 +70,7 @@ static void comparisons_count_where_they_were_made(void **state)
         {.difference = {.found = PROM_COMPARE_HOLES | PROM_COMPARE_ACCURACY,
                         .accuracy = 0.75}}, // nothing in view
     };
-    prom_run_statistics s = prom_run_statistics_of(records, 4, 10);
+    prom_run_statistics s = prom_run_statistics_of(records, 4);
     assert_int_equal(s.hole_frames, 2);
     NEAR(s.holes_mean, 0.125);
     NEAR(s.holes_max, 0.25);
@@ -91,7 +78,7 @@ static void comparisons_count_where_they_were_made(void **state)
     NEAR(s.accuracy_mean, 0.625);
     NEAR(s.accuracy_min, 0.5);
     NEAR(s.predicted_accuracy, (0.75 + 1.0) / 2);
-    s = prom_run_statistics_of(records + 2, 1, 10);
+    s = prom_run_statistics_of(records + 2, 1);
     assert_int_equal(s.hole_frames + s.accuracy_frames + s.quality_frames, 0);
 }
 
@@ -112,7 +99,7 @@ static void quality_is_of_the_compared_frames(void **state)
                         .hidden_nodes = 0.75}},
         {.difference = {.found = PROM_COMPARE_QUALITY, .flip = 0.2}},
     };
-    prom_run_statistics s = prom_run_statistics_of(records, 4, 10);
+    prom_run_statistics s = prom_run_statistics_of(records, 4);
     assert_int_equal(s.quality_frames, 3);
     NEAR(s.flip.mean, 0.2);
     NEAR(s.flip.p95, 0.3);
@@ -161,7 +148,6 @@ int main(void)
         cmocka_unit_test(percentiles_are_by_nearest_rank),
         cmocka_unit_test(one_frame_is_all_of_its_percentiles),
         cmocka_unit_test(a_percentile_is_never_between_two_frames),
-        cmocka_unit_test(misses_are_frames_over_the_budget),
         cmocka_unit_test(predictions_are_compared_with_the_drawing),
         cmocka_unit_test(comparisons_count_where_they_were_made),
         cmocka_unit_test(quality_is_of_the_compared_frames),
