@@ -117,7 +117,7 @@ prom_frame_record prom_frame_step_draw(prom_frame_step *step, const prom_camera 
 void prom_frame_step_feed(prom_frame_step *step, const prom_frame_record *record)
 {
     // The first frame touches everything for the first time.
-    bool first = !step->measured_ms;
+    bool first = !(step->measured_ms > 0);
     prom_guarantee_frame frame = {.draw_ms = record->draw_ms,
                                   .other_ms = record->select_ms + record->display_ms,
                                   .aside = record->aside || first};

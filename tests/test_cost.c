@@ -1,7 +1,6 @@
 // LINK: prom_traverse prom_metaobj
-// The cost model's fit, its profile files and the governor.
+// The cost model's fit and its profile files.
 #include "random_model.h"
-#include "traverse/governor.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -561,49 +560,6 @@ static void profiles_have_a_place(void **state)
     prom_free(cache);
 }
 
-// ---- governor
-
-static void the_governor_follows_the_device(void **state)
-{
-    (void)state;
-    prom_governor g;
-    prom_governor_init(&g, 0.1);
-    assert_true(fabs(prom_governor_budget(&g, 20) - 18) < 1e-9);
-    // The device turns out twice as slow: within three frames the frame fits again.
-    for (int i = 0; i < 3; i++) prom_governor_feed(&g, 10, 20, 1);
-    double predicted = prom_governor_budget(&g, 20);
-    assert_true(predicted * 2 + 1 <= 20);
-    // It gets quicker again: the budget is used again, more slowly.
-    prom_governor_feed(&g, 10, 10, 1);
-    assert_true(g.ratio > 1.5);
-    for (int i = 0; i < 12; i++) prom_governor_feed(&g, 10, 10, 1);
-    assert_true(fabs(g.ratio - 1) < 0.05 && fabs(g.select_ms - 1) < 0.05);
-    // One stalled frame says nothing of the next.
-    prom_governor_feed(&g, 10, 40, 1);
-    assert_true(fabs(g.ratio - 1) < 0.05);
-}
-
-static void the_governor_stays_in_its_bounds(void **state)
-{
-    (void)state;
-    prom_governor g;
-    prom_governor_init(&g, 0.1);
-    for (int i = 0; i < 50; i++) prom_governor_feed(&g, 1, 1e6, 0.1);
-    assert_true(g.ratio <= 4.0 && g.ratio > 3.9);
-    for (int i = 0; i < 50; i++) prom_governor_feed(&g, 1e6, 1, 0.1);
-    assert_true(g.ratio >= 0.25 && g.ratio < 0.26);
-    double ratio = g.ratio;
-    const double odd[] = {0.0, -1.0, NAN, INFINITY};
-    for (int i = 0; i < 4; i++) {
-        prom_governor_feed(&g, odd[i], 5, 0.1);
-        prom_governor_feed(&g, 5, odd[i], 0.1);
-    }
-    prom_governor_feed(&g, 1e6, 1, NAN);
-    assert_true(fabs(g.ratio - ratio) < 0.01 && isfinite(g.select_ms));
-    prom_governor_feed(&g, 1, 1, 1000);
-    assert_true(prom_governor_budget(&g, 20) == 0.0);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -624,8 +580,6 @@ int main(void)
         cmocka_unit_test(profiles_that_cannot_be_written),
         cmocka_unit_test(broken_profiles_are_refused),
         cmocka_unit_test(profiles_have_a_place),
-        cmocka_unit_test(the_governor_follows_the_device),
-        cmocka_unit_test(the_governor_stays_in_its_bounds),
     };
     return cmocka_run_group_tests_name("cost", tests, make_folder, remove_folder);
 }
