@@ -16,8 +16,12 @@ void prom_bound_destroy(prom_bound *bound); // NULL is allowed
 // Upper bound on the benefit of cuts of the evaluated view within its budget: the least over
 // `looks` prices from `price` (benefit per ms; 0: not known) on. Below a node that the
 // evaluation did not open, everything may be right for what the node's cheapest option costs.
+// (As builds make them, no cluster's cheapest picture costs more than what is below it.)
 // At most what the visible pixels are worth; cmin's benefit where cmin is over the budget.
 double prom_bound_find(prom_bound *bound, const prom_eval *eval, double price, unsigned looks);
+
+// Fills cut->bound, where the selection asks for it.
+void prom_bound_certify(prom_bound *bound, const prom_eval *eval, double price, prom_cut *cut);
 
 // Normalised gap of a cut with a bound (DESIGN 7): (bound - B) / (bound - B(cheapest cut)), in
 // [0,1]; 0 where the bound equals the cheapest cut's benefit, and NAN without a bound.

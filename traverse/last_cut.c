@@ -18,11 +18,12 @@ void prom_last_cut_finish(prom_last_cut *last)
 
 // Whether what an entry shows was shown by something else before: by another representation,
 // by what is below the node, or by what is above it.
-static bool is_switch(const prom_last_cut *last, const prom_cut_entry *e)
+bool prom_last_cut_is_switch(const prom_last_cut *last, const prom_cut_entry *e)
 {
     uint32_t n = e->node;
+    if (!(e->visible_px > 0.0f)) return false;
     if (last->rep[n] != PROM_NONE) return last->rep[n] != e->rep;
-    if (last->number && last->above[n] == last->number) return true;
+    if (prom_last_cut_opened(last, n)) return true;
     while ((n = last->model->parent[n]) != PROM_NONE)
         if (last->rep[n] != PROM_NONE) return true;
     return false;
@@ -40,7 +41,7 @@ prom_switches prom_last_cut_note(prom_last_cut *last, const prom_cut *cut)
     prom_switches switches = {0};
     for (size_t i = 0; i < cut->entries.count; i++) {
         const prom_cut_entry *e = &cut->entries.data[i];
-        if (!(e->visible_px > 0.0f) || !is_switch(last, e)) continue;
+        if (!prom_last_cut_is_switch(last, e)) continue;
         switches.count++;
         switches.px += (double)e->visible_px;
     }

@@ -25,6 +25,13 @@ typedef struct prom_switches {
     double px; // visible pixels of these entries
 } prom_switches;
 
+bool prom_last_cut_is_switch(const prom_last_cut *last, const prom_cut_entry *entry);
+// Whether something below the node was drawn.
+static inline bool prom_last_cut_opened(const prom_last_cut *last, uint32_t node)
+{
+    return last->number && last->above[node] == last->number;
+}
+
 // Takes a cut as the last one; returns what has switched since the one before.
 prom_switches prom_last_cut_note(prom_last_cut *last, const prom_cut *cut);
 

@@ -1,11 +1,20 @@
 // Greedy by marginal benefit per cost, from the cheapest cut upwards.
 //
 // The cheapest cut is set aside first; then steps of the chains (chain.h) are bought in one
-// global order of falling slope, until one does not fit: skipping on would make levels flip.
-// The order does not depend on the budget, so more of it buys the same steps and more.
+// global order of falling slope, until one does not fit (see prom_step_may_be_skipped). The
+// order does not depend on the budget, so more of it buys the same steps and more.
+//
+// That alone can be bad, where the first step that does not fit is a large one. So the cut is
+// compared with the one that has, beside the cheapest, only that step and those that it
+// presupposes: what greedy has bought and what this step gains are together at least what any
+// cut within the budget gains, so the better of the two has half of it (as in the knapsack
+// problem; Mason and Blake 1997 for trees).
+#include "traverse/bound.h"
 #include "traverse/chain.h"
 #include "traverse/evaluate.h"
+#include "traverse/moves.h"
 #include "traverse/selectors.h"
+#include "traverse/steady.h"
 
 #include <math.h>
 
@@ -32,6 +41,12 @@ typedef struct greedy_state {
     uint8_t *place; // per visited node: its state in its chain
     bool *opened;   // per visited node: its children stand for it
     placed *stack;
+    prom_bound *bound;
+    prom_steady steady;
+    double value;    // of what is bought
+    double refused;  // slope of the first step that did not fit, or 0
+    uint32_t unpaid; // its node, or PROM_NONE
+    uint8_t unpaid_place;
 } greedy_state;
 
 static void *create(const prom_model *model)
@@ -44,6 +59,8 @@ static void *create(const prom_model *model)
     g->place = prom_alloc(model->tree_count, sizeof *g->place);
     g->opened = prom_alloc(model->tree_count, sizeof *g->opened);
     g->stack = prom_alloc(model->tree_count, sizeof *g->stack);
+    g->bound = prom_bound_create(model);
+    prom_steady_init(&g->steady, model);
     return g;
 }
 
@@ -51,6 +68,8 @@ static void destroy(void *pointer)
 {
     greedy_state *g = pointer;
     if (!g) return;
+    prom_bound_destroy(g->bound);
+    prom_steady_finish(&g->steady);
     prom_chains_finish(&g->chains);
     prom_eval_finish(&g->eval);
     prom_free(g->heap.entries);
@@ -109,28 +128,53 @@ static bool next_action(greedy_state *g, uint32_t node, prom_chain_state *next, 
     return true;
 }
 
-// Buys until a step does not fit, or there is none left; returns what is left of the budget in
-// that case, else 0.
-static double buy_steps(greedy_state *g, double total, double budget)
+// Notes the first step of the chains that does not fit.
+static void note_unpaid(greedy_state *g, uint32_t node, double left)
 {
-    while (g->heap.count) {
-        uint32_t node = g->heap.entries[0].node;
-        prom_chain_state next;
-        bool hand_over;
-        if (!next_action(g, node, &next, &hand_over)) return 0.0;
-        double change = next.cost - states_of(g, node)[g->place[node]].cost;
-        if (total + change > budget) return 0.0;
-        total += change;
-        prom_heap_pop(&g->heap);
-        if (hand_over) {
-            g->opened[node] = true;
-            place_stacked(g, push_children(g, node, &next.limit, 0));
-        } else {
-            g->stack[0] = (placed){node, (uint8_t)(g->place[node] + 1)};
-            place_stacked(g, 1);
-        }
+    const prom_chain_state *now = &states_of(g, node)[g->place[node]];
+    if (g->refused > 0.0 || now[1].cost - now->cost <= left) return;
+    g->refused = now[1].slope;
+    g->unpaid = node;
+    g->unpaid_place = (uint8_t)(g->place[node] + 1);
+}
+
+// Takes the first step of the heap; false if it does not fit.
+static bool buy_step(greedy_state *g, double *left)
+{
+    uint32_t node = g->heap.entries[0].node;
+    prom_chain_state next;
+    bool hand_over;
+    note_unpaid(g, node, *left);
+    if (!next_action(g, node, &next, &hand_over)) return false;
+    const prom_chain_state *now = &states_of(g, node)[g->place[node]];
+    if (next.cost - now->cost > *left) return false;
+    *left -= next.cost - now->cost;
+    g->value += next.benefit - now->benefit;
+    prom_heap_pop(&g->heap);
+    if (hand_over) {
+        g->opened[node] = true;
+        place_stacked(g, push_children(g, node, &next.limit, 0));
+    } else {
+        g->stack[0] = (placed){node, (uint8_t)(g->place[node] + 1)};
+        place_stacked(g, 1);
     }
-    return fmax(budget - total, 0.0);
+    return true;
+}
+
+// Buys steps; returns what is left.
+static double buy_steps(greedy_state *g, double left)
+{
+    double least = states_of(g, 0)->benefit;
+    g->value = least;
+    g->refused = 0.0;
+    g->unpaid = PROM_NONE;
+    while (g->heap.count) {
+        double slope = g->heap.entries[0].key;
+        if (buy_step(g, &left)) continue;
+        if (!prom_step_may_be_skipped(slope, left, g->value - least)) break;
+        prom_heap_pop(&g->heap);
+    }
+    return left;
 }
 
 static void emit_cut(greedy_state *g, prom_cut *cut)
@@ -156,13 +200,69 @@ static void emit_cut(greedy_state *g, prom_cut *cut)
     }
 }
 
-// One whole selection; returns as buy_steps does.
+// ---- the first step that did not fit, by itself
+
+// How far a node that was opened on the way to the unpaid step was opened at first, from its
+// state at `place`; adds what that costs and gains.
+static prom_chain_limit first_opening(greedy_state *g, uint32_t node, uint8_t place,
+                                      prom_point *sum)
+{
+    const prom_chain_state *s = states_of(g, node);
+    prom_chain_state opening = s[place];
+    if (place < g->chains.nodes[node].own_end)
+        prom_chain_least_opening(&g->chains, node, s[g->place[node]].benefit, &opening);
+    sum->cost += opening.cost - s[place].cost;
+    sum->benefit += opening.benefit - s[place].benefit;
+    return opening.limit;
+}
+
+// Goes down to the unpaid step from the cheapest cut, along the steps that it presupposes.
+// Returns what is drawn then; if `taken`, it becomes the state.
+static prom_point go_to_unpaid(greedy_state *g, bool taken)
+{
+    const prom_model *m = g->eval.model;
+    prom_point sum = {states_of(g, 0)->cost, states_of(g, 0)->benefit};
+    uint32_t depth = 0;
+    for (uint32_t n = g->unpaid; n != PROM_NONE; n = m->parent[n]) g->stack[depth++].node = n;
+    for (uint32_t i = 0; taken && i < g->eval.visited_count; i++)
+        g->opened[g->eval.visited[i]] = false;
+    uint8_t place = 0;
+    while (--depth) {
+        uint32_t node = g->stack[depth].node, next = g->stack[depth - 1].node;
+        prom_chain_limit limit = first_opening(g, node, place, &sum);
+        place = prom_chain_child_place(&g->chains, next, &limit);
+        if (!taken) continue;
+        g->opened[node] = true;
+        for (uint32_t c = 0; c < m->child_count[node]; c++) {
+            uint32_t child = m->first_child[node] + c;
+            if (g->eval.nodes[child].culled || child == next) continue;
+            g->place[child] = prom_chain_child_place(&g->chains, child, &limit);
+        }
+    }
+    const prom_chain_state *s = states_of(g, g->unpaid);
+    sum.cost += s[g->unpaid_place].cost - s[place].cost;
+    sum.benefit += s[g->unpaid_place].benefit - s[place].benefit;
+    if (taken) g->place[g->unpaid] = g->unpaid_place;
+    return sum;
+}
+
+static void take_better(greedy_state *g, double budget)
+{
+    if (g->unpaid == PROM_NONE) return;
+    prom_point alone = go_to_unpaid(g, false);
+    if (alone.cost <= budget && alone.benefit > g->value) go_to_unpaid(g, true);
+}
+
+// ---- whole selections
+
+// Returns what is left of the budget if all steps fitted, else 0.
 static double select_once(greedy_state *g, const prom_selection *selection, float tolerance,
                           prom_cut *cut)
 {
     prom_eval *eval = &g->eval;
     double left = 0.0;
     eval->tolerance = tolerance;
+    g->refused = 0.0;
     prom_eval_run(eval, selection, prom_eval_open_visible, eval);
     prom_eval_begin_cut(eval, cut);
     if (!eval->nodes[0].culled) {
@@ -172,12 +272,13 @@ static double select_once(greedy_state *g, const prom_selection *selection, floa
         g->stack[0] = (placed){0, 0};
         place_stacked(g, 1);
         // Rounding of the running sum must not lift the finished cut over the budget.
-        left = buy_steps(g, eval->fixed_ms + eval->nodes[0].cmin,
-                         selection->budget_ms * (1.0 - 1e-9));
+        double budget = selection->budget_ms * (1.0 - 1e-9) - eval->fixed_ms;
+        left = buy_steps(g, budget - eval->nodes[0].cmin);
+        take_better(g, budget);
         emit_cut(g, cut);
     }
     prom_eval_end_cut(eval, cut);
-    return left;
+    return g->refused > 0.0 ? 0.0 : left;
 }
 
 // Whether the time that is left allows to go over more of the tree.
@@ -188,15 +289,22 @@ static bool can_look_closer(const greedy_state *g, double left_ms)
            nodes * NODE_MS < CLOSER_TIME * g->eval.selection->budget_ms;
 }
 
-static void select_greedy(void *pointer, const prom_selection *selection, prom_cut *cut)
+static void look_closer(greedy_state *g, const prom_selection *selection, prom_cut *cut)
 {
-    greedy_state *g = pointer;
-    double left = select_once(g, selection, 1.0f, cut);
-    if (!can_look_closer(g, left)) return;
     double cmin_ms = cut->cmin_ms, benefit = cut->benefit;
     select_once(g, selection, CLOSER_TOLERANCE, cut);
     if (cut->benefit < benefit) select_once(g, selection, 1.0f, cut);
     cut->cmin_ms = cmin_ms;
+}
+
+static void select_greedy(void *pointer, const prom_selection *selection, prom_cut *cut)
+{
+    greedy_state *g = pointer;
+    double left = select_once(g, selection, 1.0f, cut);
+    if (can_look_closer(g, left)) look_closer(g, selection, cut);
+    cut->limited = g->refused > 0.0 || !cut->feasible;
+    prom_bound_certify(g->bound, &g->eval, g->refused, cut);
+    prom_steady_keep(&g->steady, &g->eval, cut);
 }
 
 const prom_selector_class prom_select_greedy = {

@@ -11,9 +11,10 @@ struct prom_selector {
 };
 
 static const prom_selector_class *const classes[] = {
-    &prom_select_meta,     &prom_select_greedy, &prom_select_funkhouser,
-    &prom_select_pixels,   &prom_select_sse,    &prom_select_feedback,
-    &prom_select_distance, &prom_select_full,   &prom_select_coarsest,
+    &prom_select_meta,        &prom_select_greedy,  &prom_select_lagrange,
+    &prom_select_incremental, &prom_select_optimal, &prom_select_funkhouser,
+    &prom_select_pixels,      &prom_select_sse,     &prom_select_feedback,
+    &prom_select_distance,    &prom_select_full,    &prom_select_coarsest,
 };
 enum { CLASS_COUNT = sizeof classes / sizeof *classes };
 

@@ -6,6 +6,9 @@
 
 extern const prom_selector_class prom_select_meta;
 extern const prom_selector_class prom_select_greedy;
+extern const prom_selector_class prom_select_lagrange;
+extern const prom_selector_class prom_select_incremental;
+extern const prom_selector_class prom_select_optimal;
 extern const prom_selector_class prom_select_funkhouser;
 extern const prom_selector_class prom_select_pixels;
 extern const prom_selector_class prom_select_sse;
