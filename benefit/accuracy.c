@@ -130,15 +130,19 @@ static bool usable(const near_rows *rows, size_t i)
     return isfinite(rows->e_px[i]) && rows->e_px[i] >= 0.0f && isfinite(rows->accuracy[i]);
 }
 
+// Of the best multiple in [0,1] of near(e_px).
 static double squared_error(const near_rows *rows, double near_k)
 {
-    double sum = 0.0;
+    double aa = 0.0, an = 0.0, nn = 0.0;
     for (size_t i = 0; i < rows->count; i++) {
         if (!usable(rows, i)) continue;
-        double d = rows->accuracy[i] - 1.0 / (1.0 + near_k * rows->e_px[i]);
-        sum += d * d;
+        double a = rows->accuracy[i], near = 1.0 / (1.0 + near_k * rows->e_px[i]);
+        aa += a * a;
+        an += a * near;
+        nn += near * near;
     }
-    return sum;
+    double s = nn > 0.0 ? fmin(fmax(an / nn, 0.0), 1.0) : 0.0;
+    return fmax(aa - 2.0 * s * an + s * s * nn, 0.0);
 }
 
 // Golden-section search for the least squared error over log(near_k) in [low, high].
@@ -180,5 +184,6 @@ float prom_accuracy_fit_near(const float *e_px, const float *accuracy, size_t co
         if (error < least) least = error, best = i;
     }
     double k = refine(&rows, low + (best - 1) * step, low + (best + 1) * step);
-    return squared_error(&rows, k) < squared_error(&rows, 0.0) ? (float)k : 0.0f;
+    // Rounding must not make a law of rows that are level.
+    return squared_error(&rows, k) < squared_error(&rows, 0.0) - 1e-9 ? (float)k : 0.0f;
 }

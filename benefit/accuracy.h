@@ -44,7 +44,9 @@ void prom_accuracy_place_init(prom_accuracy_place *place, const float uv[2], flo
 float prom_accuracy(const prom_model *model, uint32_t rep, const prom_accuracy_place *place,
                     float radius);
 
-// Fits near_k >= 0 to a mesh level's own rows: least squares over (e_px, accuracy) pairs.
+// Fits near_k >= 0 to a mesh level's own rows: how its accuracy falls with e_px, whatever it is
+// at e_px = 0. Least squares of s * near(e_px) over (e_px, accuracy) pairs, for the best s in
+// [0,1]; 0 where that does not fall.
 float prom_accuracy_fit_near(const float *e_px, const float *accuracy, size_t count);
 
 // Pixels that a prototype's outline covers, seen from `dir` with the given diameter:

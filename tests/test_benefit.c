@@ -123,21 +123,26 @@ static void near_fit_recovers_its_parameter(void **state)
     (void)state;
     uint64_t seed = 5;
     for (int i = 0; i < 100; i++) {
-        float k = powf(10.0f, random_between(&seed, -3, 2)), e[12], a[12];
+        float k = powf(10.0f, random_between(&seed, -2, 2)), e[12], a[12];
+        float from = i % 2 ? 1.0f : random_between(&seed, 0.3f, 1.0f);
         for (int j = 0; j < 12; j++) {
             e[j] = random_between(&seed, 0, 20);
-            a[j] = 1.0f / (1.0f + k * e[j]);
+            a[j] = from / (1.0f + k * e[j]);
         }
         float fitted = prom_accuracy_fit_near(e, a, 12);
         assert_true(fabsf(fitted / k - 1.0f) < 1e-3f);
     }
     const float e[3] = {1, 2, 4}, perfect[3] = {1, 1, 1}, nothing[3] = {0, 0, 0};
-    const float odd[3] = {NAN, 0.5f, INFINITY};
-    assert_true(prom_accuracy_fit_near(e, perfect, 3) < 1e-3f);
-    assert_true(prom_accuracy_fit_near(e, nothing, 3) > 10.0f);
+    const float odd[3] = {NAN, 0.5f, INFINITY}, level[3] = {0.7f, 0.7f, 0.7f};
+    const float rising[3] = {0.6f, 0.7f, 0.75f}, falling[3] = {0.8f, 0.7f, 0.4f};
+    assert_float_equal(prom_accuracy_fit_near(e, perfect, 3), 0.0f, 0.0f);
+    assert_float_equal(prom_accuracy_fit_near(e, level, 3), 0.0f, 0.0f);
+    assert_float_equal(prom_accuracy_fit_near(e, rising, 3), 0.0f, 0.0f);
+    assert_true(prom_accuracy_fit_near(e, falling, 3) > 0.1f);
+    assert_float_equal(prom_accuracy_fit_near(e, nothing, 3), 0.0f, 0.0f);
     assert_float_equal(prom_accuracy_fit_near(nothing, perfect, 3), 0.0f, 0.0f);
     assert_float_equal(prom_accuracy_fit_near(NULL, NULL, 0), 0.0f, 0.0f);
-    assert_float_equal(prom_accuracy_fit_near(e, odd, 3), 0.5f, 1e-3f); // 1/(1+2k) = 0.5
+    assert_float_equal(prom_accuracy_fit_near(e, odd, 3), 0.0f, 0.0f); // one row tells nothing
 }
 
 // ---- pixels
