@@ -1,6 +1,7 @@
 #include "app/walk_loop.h"
 
 #include "app/frame_step.h"
+#include "app/rest.h"
 #include "app/walk_motion.h"
 #include "app/walk_path.h"
 #include "app/walk_size.h"
@@ -16,6 +17,8 @@
 // A picture at rest is drawn again until what the guarantee knows is of this view only, and
 // what frames show of each other has settled.
 #define SETTLE_FRAMES (PROM_GUARANTEE_FAST + 7)
+// Where more time makes the picture better, it takes over after these.
+#define STILL_FRAMES 3
 #define REST_WAIT_S 0.25
 // The step after a rest: the time before it was no walking.
 #define FIRST_STEP_S (1.0 / 60)
@@ -27,6 +30,7 @@ typedef struct walk {
     const prom_walk_options *options;
     prom_walk_result *result;
     prom_frame_step step;
+    prom_rest rest;
     prom_walk_motion motion;
     prom_walk_title title;
     prom_window_input input;
@@ -135,10 +139,18 @@ static bool is_shown(const walk *w)
     return w->input.size_px[0] && w->input.size_px[1];
 }
 
+// The same picture again and again.
+static bool is_still(const walk *w)
+{
+    unsigned settled = w->rest.budget_ms > 0 ? STILL_FRAMES : SETTLE_FRAMES;
+    return !w->options->frames && !w->playing && w->same >= settled;
+}
+
+// Nothing is left to be drawn.
 static bool is_at_rest(const walk *w)
 {
     if (w->options->frames) return false;
-    return !is_shown(w) || (!w->playing && w->same >= SETTLE_FRAMES);
+    return !is_shown(w) || (is_still(w) && prom_rest_is_done(&w->rest));
 }
 
 // Returns what showing it took. A device may wait for the screen in it, which is no work; a
@@ -154,6 +166,7 @@ static double present(walk *w)
 static void draw(walk *w, double start_ms)
 {
     prom_walk_result *r = w->result;
+    prom_rest_end(&w->rest);
     w->same = same_view(&w->camera, &w->drawn) ? w->same + 1 : 1;
     prom_frame_record record = prom_frame_step_draw(&w->step, &w->camera, start_ms);
     if (is_shown(w)) record.display_ms = present(w);
@@ -169,6 +182,14 @@ static void draw(walk *w, double start_ms)
     prom_walk_title_add(&w->title, record.frame_ms, record.triangles, miss);
 }
 
+// No frame of the walk: it takes what time there is, and counts for nothing.
+static void refine(walk *w)
+{
+    bool better = prom_rest_step(&w->rest, &w->camera);
+    if (better) w->title.triangles = w->rest.triangles;
+    if (better || w->input.exposed) present(w);
+}
+
 static void tell(walk *w)
 {
     char text[PROM_WALK_TITLE_BYTES];
@@ -176,7 +197,8 @@ static void tell(walk *w)
                                    .selector = w->options->selector,
                                    .budget_ms = w->options->budget_ms,
                                    .playing = w->playing,
-                                   .at_rest = is_at_rest(w),
+                                   .at_rest = is_still(w),
+                                   .refined = prom_rest_shows_all(&w->rest),
                                    .captured = w->input.captured};
     if (prom_walk_title_due(&w->title, &facts, prom_clock_ms(), text))
         prom_window_set_title(w->window, text);
@@ -187,18 +209,21 @@ static prom_status take_turn(walk *w, prom_error *error)
     bool rested = is_at_rest(w);
     prom_window_poll(w->window, rested ? REST_WAIT_S : 0, &w->input);
     double start = prom_clock_ms();
-    double dt_s = rested ? FIRST_STEP_S : (start - w->last_ms) / 1000;
+    double dt_s = is_still(w) ? FIRST_STEP_S : (start - w->last_ms) / 1000;
     w->last_ms = start;
     if (w->session->frozen && w->options->frames) dt_s = prom_session_step_s(w->session);
     prom_status status = follow_size(w, error);
     if (status) return status;
     w->step.dt_s = dt_s;
     advance(w, dt_s);
-    bool done = same_view(&w->camera, &w->drawn) && is_at_rest(w);
-    if (!done)
+    bool same = same_view(&w->camera, &w->drawn);
+    if (same && is_at_rest(w)) {
+        if (w->input.exposed) present(w);
+    } else if (same && is_still(w)) {
+        refine(w);
+    } else {
         draw(w, start);
-    else if (w->input.exposed)
-        present(w);
+    }
     if (w->input.pressed[PROM_KEY_F12]) take_shot(w);
     tell(w);
     return PROM_OK;
@@ -235,17 +260,19 @@ prom_status prom_walk_run(prom_session *session, prom_window *window,
 {
     walk w = {.session = session, .window = window, .options = options, .result = result};
     *result = (prom_walk_result){0};
-    prom_status status =
-        prom_frame_step_init(&w.step, session, options->selector, options->budget_ms,
-                             options->rule_scale, error);
+    prom_status status = prom_frame_step_init(&w.step, session, options->selector,
+                                              options->budget_ms, options->rule_scale, error);
     if (status) return status;
-    begin(&w);
+    status =
+        prom_rest_init(&w.rest, &w.step, options->selector, options->rest_budget_ms, error);
+    if (!status) begin(&w);
     while (!status && goes_on(&w)) status = take_turn(&w, error);
     if (result->frames) {
         result->frame_ms /= (double)result->frames;
         result->present_ms /= (double)result->frames;
     }
     result->camera = w.camera;
+    prom_rest_finish(&w.rest);
     prom_frame_step_finish(&w.step);
     return status;
 }

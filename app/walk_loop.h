@@ -1,5 +1,6 @@
 // The loop of `promenade walk`: input, motion, a frame within the budget, the window. At rest
-// it waits for the user instead of drawing the same picture again.
+// the picture is
+// refined up to full detail; then it waits for the user.
 #ifndef PROM_APP_WALK_LOOP_H
 #define PROM_APP_WALK_LOOP_H
 
@@ -9,7 +10,8 @@
 typedef struct prom_walk_options {
     const char *name, *selector; // name: the model's, for the title
     double budget_ms, rule_scale;
-    bool play;       // start on the path
+    double rest_budget_ms; // of a step while the camera stands still; 0: no refinement then
+    bool play;             // start on the path
     uint64_t frames; // 0: until the user ends it; else no rests, and a key of the path each
 } prom_walk_options;
 

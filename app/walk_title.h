@@ -15,13 +15,14 @@ typedef struct prom_walk_title {
     uint32_t frames;
     double frame_ms, triangles;
     double told_ms, told_triangles;
-    bool told_at_rest, told_captured;
+    bool told_at_rest, told_refined, told_captured;
 } prom_walk_title;
 
 typedef struct prom_walk_title_facts {
     const char *name, *selector;
     double budget_ms;
     bool playing, at_rest, captured;
+    bool refined; // at rest the picture shows full detail
 } prom_walk_title_facts;
 
 void prom_walk_title_add(prom_walk_title *title, double frame_ms, double triangles, bool miss);

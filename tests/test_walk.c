@@ -435,6 +435,24 @@ static void at_rest_nothing_is_drawn(void **state)
     assert_true(read_ending().frames < 20);
 }
 
+static void at_rest_it_shows_full_detail(void **state)
+{
+    (void)state;
+    NEED_WINDOW();
+    expect("shot scene.prom" VIEW " --frame 0 -o shot.png", 0);
+    start_walk("--budget-ms 0.05 --rest-budget-ms 0.2");
+    wait_for_title("at rest, full detail");
+    wait_for_screen("shot.png", 0.5);
+    xdotool("key Right");
+    wait_for_title("at rest, full detail");
+    end_walk();
+    start_walk("--rest-budget-ms 0");
+    wait_for_title("at rest");
+    nap(500);
+    assert_false(title_has("full detail"));
+    end_walk();
+}
+
 static void the_path_is_played(void **state)
 {
     (void)state;
@@ -476,6 +494,7 @@ int main(void)
         cmocka_unit_test_teardown(the_picture_follows_the_window, end_walker),
         cmocka_unit_test_teardown(a_click_captures_the_mouse_and_tab_frees_it, end_walker),
         cmocka_unit_test_teardown(at_rest_nothing_is_drawn, end_walker),
+        cmocka_unit_test_teardown(at_rest_it_shows_full_detail, end_walker),
         cmocka_unit_test_teardown(the_path_is_played, end_walker),
         cmocka_unit_test_teardown(a_picture_that_cannot_be_written_is_an_error, end_walker),
     };
