@@ -15,13 +15,22 @@
 #define COLD_FRAMES 3
 // A frame further from the expected time than the margin, and than this, is an outlier.
 #define OUTLIER 0.1
+// So many frames on one side of what is expected happen by chance once in 60 or so; then the
+// scale follows them alone. By simulation, like the length of its window: shorter ones
+// stray more, longer ones lag behind.
+#define SIDE_RUN 6
 
 // A miss more than accepted adds EXCESS_STEP of the quantile (or of QUANTILE_LEAST) to it, two
 // 3, three 7 times that, and no more are counted, so that the margin comes back once the cause
 // is gone. By simulation (tests/bench/bench_guarantee.c).
-#define EXCESS_STEP 0.25
+#define EXCESS_STEP 0.15
 #define EXCESS_MAX 3.0
 #define QUANTILE_LEAST 0.1
+// A score beyond the margin counts for no more than this times it.
+#define OUTLIER_SCORE 1.5
+// The largest of a few scores falls short of their quantile: of 20 normal ones, p99 is 1.25
+// times as far out.
+#define FEW_SCORES 1.25
 
 // Charges follow a slow frame more than a quick one.
 #define CHARGE_UP 0.6
@@ -70,15 +79,22 @@ static double scale_of_window(const prom_guarantee *g)
     return fmin(fmax((double)ratios[g->window / 2], SCALE_MIN), SCALE_MAX);
 }
 
-// Two frames in a row that are far too slow, or far too quick, are no noise but another pace
-// of the machine: what was before them is forgotten.
+// +-n: the last n frames were all on this side of what is usual.
+static int lengthened(int run, bool above, bool below)
+{
+    if (above) return run > 0 ? run + 1 : 1;
+    if (below) return run < 0 ? run - 1 : -1;
+    return 0;
+}
+
+// Two frames in a row that are far too slow, or far too quick, are no noise but another pace of
+// the machine: what was before them is forgotten.
 static bool changes_pace(prom_guarantee *g, double error)
 {
     double limit = fmax(-log1p(-g->margin), OUTLIER);
-    int outlier = (error > limit) - (error < -limit);
-    bool changes = outlier && outlier == g->outlier;
-    g->outlier = outlier;
-    return changes;
+    g->far_run = lengthened(g->far_run, error > limit, error < -limit);
+    g->side_run = lengthened(g->side_run, error > 0, error < 0);
+    return abs(g->far_run) >= 2;
 }
 
 static void follow(prom_guarantee *g, const prom_guarantee_frame *frame, bool changes)
@@ -87,10 +103,8 @@ static void follow(prom_guarantee *g, const prom_guarantee_frame *frame, bool ch
     g->fast[i].draw_ms = frame->draw_ms;
     for (int t = 0; t < PROM_TERMS; t++)
         g->fast[i].terms_ms[t] = frame->terms_ms[t] / g->terms.factors[t];
-    if (changes)
-        g->window = 2;
-    else if (g->window < PROM_GUARANTEE_FAST)
-        g->window++;
+    unsigned most = changes ? 2 : abs(g->side_run) >= SIDE_RUN ? SIDE_RUN : PROM_GUARANTEE_FAST;
+    g->window = g->window < most ? g->window + 1 : most;
 }
 
 // ---- the terms
@@ -133,29 +147,45 @@ static double quantile_of_scores(const prom_guarantee *g)
     double rank = fmin(ceil((double)(count + 1) * (1 - rate)), (double)count);
     double seen = (double)sorted[(size_t)rank - 1];
     double known = fmin(1.0, (double)count / fmin(1 / rate, (double)limit));
-    return known * seen + (1 - known) * fmax(prior, seen);
+    return known * seen + (1 - known) * fmax(prior, FEW_SCORES * seen);
+}
+
+// The median of n frames strays by sqrt(pi / 2n) of their noise: right after a change of pace
+// the margin is wider by that.
+static double widening(const prom_guarantee *g)
+{
+    double now = 1 + M_PI_2 / fmax(g->window, 1), usual = 1 + M_PI_2 / PROM_GUARANTEE_FAST;
+    return sqrt(now / usual);
 }
 
 static void set_margin(prom_guarantee *g)
 {
     g->quantile = fmax(quantile_of_scores(g), 0.0);
     double step = EXCESS_STEP * fmax(g->quantile, QUANTILE_LEAST);
-    double log_margin = g->quantile + step * (exp2(g->excess) - 1);
+    double log_margin = g->quantile * widening(g) + step * (exp2(g->excess) - 1);
     g->margin = fmin(-expm1(-log_margin), MARGIN_MAX);
 }
 
-// A change of pace is answered by the scale; its two frames are misses, but no noise.
-static void score(prom_guarantee *g, double log_score, bool changes, bool was_outlier)
+// A score is noise only if the next frame does not show that the pace changed: that is the
+// scale's to answer. One far beyond the margin counts as one a bit beyond, lest a single stall
+// sets the margin while few scores are known.
+static void note_score(prom_guarantee *g, double log_score, bool changes)
+{
+    if (changes) {
+        g->pending = NAN;
+        return;
+    }
+    if (!isnan(g->pending)) g->scores[g->scored++ % PROM_GUARANTEE_SCORES] = (float)g->pending;
+    double most = OUTLIER_SCORE * fmax(-log1p(-g->margin), QUANTILE_LEAST);
+    g->pending = fmin(log_score, most);
+}
+
+static void score(prom_guarantee *g, double log_score, bool changes)
 {
     double miss = log_score > -log1p(-g->margin) ? 1.0 : 0.0;
     double excess = g->excess + miss - g->options.miss_rate;
     g->excess = fmin(fmax(excess, 0.0), EXCESS_MAX);
-    if (!changes) {
-        g->scores[g->scored++ % PROM_GUARANTEE_SCORES] = (float)log_score;
-    } else if (was_outlier && g->scored > 0) {
-        g->scored--;
-    }
-    set_margin(g);
+    note_score(g, log_score, changes);
 }
 
 // ---- the interface
@@ -164,7 +194,8 @@ void prom_guarantee_init(prom_guarantee *g, const prom_cost_model *cost,
                          const prom_guarantee_options *options)
 {
     assert(options->miss_rate > 0.0 && options->miss_rate < 1.0);
-    *g = (prom_guarantee){.options = *options, .device = *cost, .cost = *cost, .scale = 1.0};
+    *g = (prom_guarantee){
+        .options = *options, .device = *cost, .cost = *cost, .scale = 1.0, .pending = NAN};
     g->device.margin = cost->margin >= 0.0 ? fmin(cost->margin, MARGIN_MAX) : 0.0;
     prom_term_factors_init(&g->terms);
     if (options->frozen) {
@@ -206,14 +237,14 @@ static void learn(prom_guarantee *g, const prom_guarantee_frame *frame, double p
     double expected = g->scale * predicted;
     double whole = fmax(frame->draw_ms + frame->other_ms - g->charge_ms, 1e-3 * expected);
     bool near_budget = predicted >= NEAR_BUDGET * prom_guarantee_allowed(g);
-    bool was_outlier = g->outlier != 0, known = g->frames >= COLD_FRAMES;
+    bool known = g->frames >= COLD_FRAMES;
     double error = log(frame->draw_ms / expected);
     bool changes = changes_pace(g, error);
     if (known && !changes) learn_terms(g, frame->terms_ms, error);
     follow(g, frame, changes);
-    if (known && near_budget && !frame->aside)
-        score(g, log(whole / expected), changes, was_outlier);
+    if (known && near_budget && !frame->aside) score(g, log(whole / expected), changes);
     g->scale = scale_of_window(g);
+    set_margin(g);
 }
 
 void prom_guarantee_feed(prom_guarantee *g, const prom_guarantee_frame *frame)

@@ -33,7 +33,7 @@ typedef struct prom_guarantee_options {
     bool frozen;
 } prom_guarantee_options;
 
-enum { PROM_GUARANTEE_SCORES = 512, PROM_GUARANTEE_FAST = 11 };
+enum { PROM_GUARANTEE_SCORES = 512, PROM_GUARANTEE_FAST = 21 };
 
 typedef struct prom_guarantee {
     prom_guarantee_options options;
@@ -49,12 +49,14 @@ typedef struct prom_guarantee {
         double draw_ms;
     } fast[PROM_GUARANTEE_FAST]; // the last frames, a ring
     unsigned window;             // of them since the machine last changed its pace
-    int outlier; // the last frame's: 1 far too slow, -1 far too quick, 0 neither
-    float
-        scores[PROM_GUARANTEE_SCORES]; // logarithms, of the frames that move the margin, a ring
-    uint64_t scored;                   // of them so far
-    double quantile;                   // of the recent ones
-    double excess;                     // misses beyond the accepted ones, at least 0
+    // +-n: so many frames were slower (+) or quicker than expected in a row; by far.
+    int side_run, far_run;
+    // Logarithms, of the frames that move the margin, a ring.
+    float scores[PROM_GUARANTEE_SCORES];
+    uint64_t scored; // of them so far
+    double pending;  // the last score, not among them yet; or NAN
+    double quantile; // of the recent ones
+    double excess;   // misses beyond the accepted ones, at least 0
 } prom_guarantee;
 
 // cost: the device's model, copied.

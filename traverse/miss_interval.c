@@ -5,7 +5,7 @@
 
 #define TAIL 0.025 // of the confidence of 95 % on each side
 
-// The probability of at most k of n at a rate of p in (0,1).
+// The probability of at most k of n at a rate of p in (k / n, 1): the terms fall from k on.
 static double at_most(double k, double n, double p)
 {
     double odds = (1 - p) / p;
@@ -14,7 +14,7 @@ static double at_most(double k, double n, double p)
     double sum = term;
     for (double i = k; i > 0; i--) {
         double next = term * odds * i / (n - i + 1);
-        if (next < term && next < 1e-16 * sum) break;
+        if (next < 1e-16 * sum) break;
         sum += term = next;
     }
     return sum;
@@ -24,7 +24,7 @@ static double at_most(double k, double n, double p)
 static double upper(double k, double n)
 {
     if (k >= n) return 1.0;
-    double low = 0.0, high = 1.0;
+    double low = k / n, high = 1.0;
     for (int i = 0; i < 60; i++) {
         double middle = (low + high) / 2;
         *(at_most(k, n, middle) > TAIL ? &low : &high) = middle;
