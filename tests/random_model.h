@@ -41,6 +41,7 @@ typedef struct random_model_options {
     float extent;        // half edge of the world
     float bare_clusters; // part of the clusters without representations
     float artists;       // part of the objects whose artist gave levels
+    bool correlated;     // four meshes each, whose costs go with what they show
 } random_model_options;
 
 enum { RANDOM_REPS_MAX = 11 };
@@ -158,6 +159,26 @@ static inline void random_reps(prom_model *m, uint64_t *seed, bool cluster, bool
     p->rep_count = m->rep_count - p->first_rep;
 }
 
+// Four meshes; each has more triangles, the more it shows. A cluster's cheapest is cheaper than
+// anything below it.
+static inline void random_correlated_reps(prom_model *m, uint64_t *seed, bool cluster)
+{
+    prom_prototype *p = &m->prototypes[m->prototype_count - 1];
+    float quality = cluster ? random_between(seed, 0.6f, 0.95f) : 1.0f;
+    float triangles = random_between(seed, cluster ? 200 : 400, cluster ? 1500 : 4000);
+    for (uint32_t l = 0; l < 4; l++) {
+        float share = quality * quality * random_between(seed, 0.7f, 1.0f);
+        uint32_t count = (uint32_t)(triangles * share * share) + 20;
+        if (l == 3) count = cluster ? 4 : 20;
+        random_add_rep(m, seed, PROM_REP_MESH, l, l ? 0.01f * (float)l : 0.0f, count, quality);
+        m->reps[m->rep_count - 1].draws = 1;
+        m->reps[m->rep_count - 1].layers = 1.0f;
+        m->reps[m->rep_count - 1].shading = PROM_SHADE_PLAIN;
+        quality *= random_between(seed, 0.5f, 0.95f);
+    }
+    p->rep_count = 4;
+}
+
 static inline void random_allocate(prom_model *m, uint32_t nodes, uint32_t prototypes)
 {
     prom_arena *a = &m->arena;
@@ -210,7 +231,10 @@ static inline void random_model(prom_model *m, uint64_t seed, const random_model
     for (uint32_t i = 0; i < shared; i++) {
         random_prototype(m, &seed, 0);
         bool artist = o->artists > 0.0f && random_unit(&seed) < o->artists;
-        random_reps(m, &seed, false, artist);
+        if (o->correlated)
+            random_correlated_reps(m, &seed, false);
+        else
+            random_reps(m, &seed, false, artist);
     }
     uint32_t count = 1, open = 1, leaves = 0; // nodes numbered, without a role yet, leaves
     m->parent[0] = PROM_NONE;
@@ -230,7 +254,11 @@ static inline void random_model(prom_model *m, uint64_t seed, const random_model
             open += children;
             m->prototype[n] = m->prototype_count;
             random_prototype(m, &seed, children);
-            if (random_unit(&seed) >= o->bare_clusters) random_reps(m, &seed, true, false);
+            bool bare = random_unit(&seed) < o->bare_clusters;
+            if (!bare && o->correlated)
+                random_correlated_reps(m, &seed, true);
+            else if (!bare)
+                random_reps(m, &seed, true, false);
         } else {
             m->prototype[n] = random_below(&seed, shared);
             m->child_count[n] = 0;
@@ -262,6 +290,22 @@ static inline void random_camera(const prom_model *m, uint64_t *seed, prom_camer
         target[k] = m->center[look][k] + random_between(seed, -1, 1);
     }
     prom_camera_look_at(camera, target);
+}
+
+// A camera outside that has all of the model in view.
+static inline void random_camera_outside(const prom_model *m, uint64_t *seed,
+                                         prom_camera *camera)
+{
+    *camera = (prom_camera){.fov_y = 1.0f, .z_near = 0.01f, .width = 1280, .height = 1280};
+    float direction[3], length = 0.0f;
+    for (int k = 0; k < 3; k++) {
+        direction[k] = random_between(seed, -1, 1);
+        length += direction[k] * direction[k];
+    }
+    float reach = m->radius[0] * random_between(seed, 2.2f, 4.0f) / sqrtf(length + 1e-6f);
+    for (int k = 0; k < 3; k++)
+        camera->eye[k] = m->center[0][k] + (double)(direction[k] * reach);
+    prom_camera_look_at(camera, m->center[0]);
 }
 
 // Costs of the order of a software rasteriser's.

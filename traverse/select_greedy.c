@@ -47,6 +47,7 @@ typedef struct greedy_state {
     double refused;  // slope of the first step that did not fit, or 0
     uint32_t unpaid; // its node, or PROM_NONE
     uint8_t unpaid_place;
+    prom_point alone; // the cheapest cut with this step and those that it presupposes
 } greedy_state;
 
 static void *create(const prom_model *model)
@@ -249,8 +250,15 @@ static prom_point go_to_unpaid(greedy_state *g, bool taken)
 static void take_better(greedy_state *g, double budget)
 {
     if (g->unpaid == PROM_NONE) return;
-    prom_point alone = go_to_unpaid(g, false);
-    if (alone.cost <= budget && alone.benefit > g->value) go_to_unpaid(g, true);
+    g->alone = go_to_unpaid(g, false);
+    if (g->alone.cost <= budget && g->alone.benefit > g->value) go_to_unpaid(g, true);
+}
+
+bool prom_greedy_unpaid(const void *state, double *ms)
+{
+    const greedy_state *g = state;
+    *ms = g->eval.fixed_ms + g->alone.cost;
+    return !g->eval.nodes[0].culled && g->unpaid != PROM_NONE;
 }
 
 // ---- whole selections
