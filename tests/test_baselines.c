@@ -260,9 +260,11 @@ static void funkhouser_fills_the_budget_with_leaves(void **state)
             prom_eval_run(&eval, &b.selection, NULL, NULL);
             double least, most = most_of_leaves(&eval, &least), last = -INFINITY;
             double full = fmax(bench_run(&b, "full", 0)->predicted_ms, least);
+            b.selection.certify = look > 0;
             for (int i = -3; i <= 20; i++) {
                 double budget = least * (1.0 + 1e-6) + (full - least) * i / 20.0;
                 const prom_cut *cut = bench_run(&b, "funkhouser", budget);
+                assert_true(isfinite(cut->bound) || !b.selection.certify);
                 assert_null(prom_cut_check(&b.model, &b.view, cut));
                 for (size_t k = 0; k < cut->entries.count; k++)
                     assert_int_equal(b.model.child_count[cut->entries.data[k].node], 0);

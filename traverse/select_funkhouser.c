@@ -11,7 +11,7 @@
 // hysteresis. Here it is ours, visible pixels x measured accuracy x weight, so that only the
 // choice differs. It may leave objects out; here the cheapest level is the least, and where
 // these are over the budget the cut says that it is not feasible.
-#include "traverse/evaluate.h"
+#include "traverse/bound.h"
 #include "traverse/heap.h"
 #include "traverse/selectors.h"
 
@@ -21,6 +21,7 @@ typedef struct funkhouser_state {
     prom_eval eval;
     prom_heap heap;   // of leaves, by the value of their next level
     uint32_t *option; // per leaf in view: what it is drawn by
+    prom_bound *bound;
 } funkhouser_state;
 
 static void *create(const prom_model *model)
@@ -30,6 +31,7 @@ static void *create(const prom_model *model)
     state->eval.any_mesh_hides = true;
     state->heap.entries = prom_alloc(model->tree_count, sizeof *state->heap.entries);
     state->option = prom_alloc(model->tree_count, sizeof *state->option);
+    state->bound = prom_bound_create(model);
     return state;
 }
 
@@ -40,6 +42,7 @@ static void destroy(void *pointer)
     prom_eval_finish(&state->eval);
     prom_free(state->heap.entries);
     prom_free(state->option);
+    prom_bound_destroy(state->bound);
     prom_free(state);
 }
 
@@ -108,6 +111,7 @@ static void select_funkhouser(void *pointer, const prom_selection *selection, pr
         if (is_drawn(eval, eval->visited[i]))
             prom_eval_emit(eval, eval->visited[i], state->option[eval->visited[i]], cut);
     prom_eval_end_cut(eval, cut);
+    prom_bound_certify(state->bound, eval, 0.0, cut);
 }
 
 const prom_selector_class prom_select_funkhouser = {

@@ -20,8 +20,10 @@ typedef struct prom_selection {
     // For selectors that follow a rule of their own (`has_scale`): factor on its measure, more
     // of it is finer; 0 means 1.
     float rule_scale;
-    double measured_ms; // for `feedback`: what the last frame took; 0: not known
-    bool certify;       // a bound is wanted: prom_cut.bound
+    // For `feedback`: what the last frame took; 0: not known. It is held against budget_ms,
+    // which for this selector is the user's budget, without a margin.
+    double measured_ms;
+    bool certify; // a bound is wanted: prom_cut.bound
     uint32_t
         max_switches; // of what is shown, from one cut to the next (see last); 0: any number
     // Pixels of the accuracy tables for each of this view: the ratio of their pixels per
@@ -49,6 +51,8 @@ typedef struct prom_selector_class {
     void (*destroy)(void *state);
     void (*select)(void *state, const prom_selection *selection, prom_cut *cut);
 } prom_selector_class;
+
+#define PROM_SELECTOR_DEFAULT "greedy"
 
 // All selectors, in the order of the help text.
 size_t prom_selector_count(void);
