@@ -1,0 +1,174 @@
+#!/bin/sh
+# What each baseline loses at the same p95 of frame time as the default.
+#
+#   tests/bench/baselines.sh [OPTION...] PROGRAM FOLDER MODEL:PATH...
+#     -f N    frames a run (300)
+#     -q N    frames compared with full detail (30)
+#     -F N    frames of `full`, which may be slow (60)
+#     -s W,H  resolutions, with blanks between ("640,360")
+#     -b LIST budgets in percent of the full mean ("10 20 40")
+#     -t LIST budgets in milliseconds instead
+#     -S NAME what they are compared with (the program's default)
+#     -B LIST baselines ("meta funkhouser feedback distance pixels sse")
+#
+# MODEL is a .prom file, PATH a camera path or `auto`. For each budget the default walks first; then
+# each baseline's parameter is searched until its p95 is within 5 % of that: --budget-ms of `meta`,
+# `funkhouser` and `feedback`, --rule-scale of the others, doubled or halved until the time is
+# passed, then by bisection. Where none does (within 1/64 to 64 of where it began), the nearest is
+# kept, and `ratio` says how far off it is. Both are then measured once more, one after the other;
+# these are the rows. In bold: FLIP and loss that are less than the default's.
+# It measures times, so nothing else should keep the machine busy.
+# Reports stay in FOLDER; FOLDER/baselines.md is the table, also printed.
+set -eu
+here=$(dirname "$0")
+# shellcheck source-path=SCRIPTDIR
+. "$here/common.sh"
+frames=300
+compared=30
+full_frames=60
+sizes="640,360"
+percents="10 20 40"
+budgets=""
+ours=""
+baselines="meta funkhouser feedback distance pixels sse"
+while getopts f:q:F:s:b:t:S:B: option; do
+    case $option in
+    f) frames=$OPTARG ;;
+    q) compared=$OPTARG ;;
+    F) full_frames=$OPTARG ;;
+    s) sizes=$OPTARG ;;
+    b) percents=$OPTARG ;;
+    t) budgets=$OPTARG ;;
+    S) ours=$OPTARG ;;
+    B) baselines=$OPTARG ;;
+    *) usage ;;
+    esac
+done
+shift $((OPTIND - 1))
+[ $# -ge 3 ] || usage
+program=$1
+out=$2
+shift 2
+need jq awk
+check_walks "$@"
+mkdir -p "$out"
+
+# bench NAME COMPARED OPTION...: one run, kept as NAME.json.
+bench() {
+    name=$1 quality=$2
+    shift 2
+    "$program" bench "$model" --path "$path" --resolution "$size" --frames "$frames" \
+        --quality-frames "$quality" --report "$out/$name.json" --quiet "$@" > /dev/null
+}
+
+bench_ours() {
+    bench "$tag-ours" "$1" --budget-ms "$budget" ${ours:+--selector "$ours"}
+}
+
+# bench_baseline COMPARED: $baseline with its parameter at $factor of where the search began.
+bench_baseline() {
+    case $baseline in
+    meta | funkhouser | feedback)
+        value=$(calc "$budget * $factor")
+        set -- "$1" --budget-ms "$value" ;;
+    *)
+        value=$(calc "$factor")
+        set -- "$1" --budget-ms "$budget" --rule-scale "$value" ;;
+    esac
+    quality=$1
+    shift
+    bench "$tag-$baseline" "$quality" --selector "$baseline" "$@"
+}
+
+p95_of() {
+    jq -r '.runs[0].frame_ms.p95' "$out/$1.json"
+}
+
+near() {
+    holds "$time / $target <= 1.05 && $time / $target >= 0.95"
+}
+
+# find_factor: from $factor to one at which $baseline's p95 is $target ms; $limit is set when that
+# would be beyond what is tried.
+find_factor() {
+    low="" high="" limit=""
+    for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14; do
+        bench_baseline 0
+        time=$(p95_of "$tag-$baseline")
+        echo "$tag: $baseline at $value has a p95 of $time ms, wanted $target" >&2
+        if near; then return; fi
+        if holds "$time < $target"; then low=$factor; else high=$factor; fi
+        if [ -z "$high" ]; then
+            if holds "$low >= 64"; then limit=yes && return; fi
+            factor=$(calc "$low * 2")
+        elif [ -z "$low" ]; then
+            if holds "$high <= 1 / 64"; then limit=yes && return; fi
+            factor=$(calc "$high / 2")
+        else
+            # It jumps, or noise has put one on the wrong side: there is nothing between them.
+            if holds "$high / $low < 1.02"; then return; fi
+            factor=$(calc "sqrt($low * $high)")
+        fi
+    done
+}
+
+# row NAME PARAMETER: against the run of ours.
+row() {
+    jq -r -s --arg scene "$scene" --arg budget "$budget" --arg parameter "$2" '
+        def r(d): . * pow(10; d) | round / pow(10; d);
+        def least(text; mine; theirs): if mine < theirs then "**\(text)**" else "\(text)" end;
+        .[1].runs[0] as $ours | .[0].runs[0]
+        | "| \($scene) | \(.resolution | join("x")) | \($budget | tonumber | r(1)) | " +
+          "\(.selector) | \($parameter) | \(.frame_ms.mean | r(1)) | \(.frame_ms.p95 | r(1)) | " +
+          "\(.frame_ms.p95 / $ours.frame_ms.p95 | r(2)) | \(.miss_rate * 100 | r(1)) | " +
+          "\(least(.quality.mean | r(4); .quality.mean; $ours.quality.mean)) | " +
+          "\(least(.quality.loss * 100 | r(2); .quality.loss; $ours.quality.loss)) | " +
+          "\(.switches.mean | r(1)) | \(.triangles.mean | round) |"' \
+        "$out/$1.json" "$out/$tag-ours.json"
+}
+
+# What the machine does meanwhile moves both, so the search goes on from a new run of ours when the
+# last pair disagrees.
+compare() {
+    factor=1
+    for _ in 1 2 3; do
+        target=$(p95_of "$tag-ours")
+        find_factor
+        bench_ours "$compared"
+        bench_baseline "$compared"
+        target=$(p95_of "$tag-ours")
+        time=$(p95_of "$tag-$baseline")
+        if near || [ -n "$limit" ]; then break; fi
+    done
+    row "$tag-ours" "$budget ms"
+    case $baseline in
+    meta | funkhouser | feedback) row "$tag-$baseline" "$value ms" ;;
+    *) row "$tag-$baseline" "scale $value" ;;
+    esac
+}
+
+walk() {
+    list=$budgets
+    name=$(tag_of "$scene")-$(tag_of "$size")
+    if [ -z "$list" ]; then
+        mean=$(full_mean "$name-full" "$full_frames")
+        for percent in $percents; do
+            list="$list $(calc "int($mean * $percent + 0.5) / 100")"
+        done
+    fi
+    for budget in $list; do
+        tag=$name-$budget
+        bench_ours 0
+        for baseline in $baselines; do compare; done
+    done
+}
+
+{
+    echo "| scene | size | budget ms | selector | parameter | mean ms | p95 | ratio | misses % |" \
+        "FLIP | loss % | switches | triangles |"
+    echo "| --- | --- | ---: | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"
+    for pair in "$@"; do
+        take_walk "$pair"
+        for size in $sizes; do walk; done
+    done
+} | tee "$out/baselines.md"
