@@ -2,8 +2,8 @@
 
 #include "metaobj/base/clock.h"
 #include "metaobj/base/hash.h"
+#include "traverse/bound.h"
 
-#include <math.h>
 #include <string.h>
 
 prom_status prom_frame_step_init(prom_frame_step *step, prom_session *session,
@@ -73,7 +73,7 @@ static void describe(const prom_cut *cut, prom_frame_record *record)
 {
     record->benefit_px = cut->benefit;
     record->loss_px = cut->loss;
-    record->gap = NAN;
+    record->gap = prom_cut_gap(cut);
     record->cut_nodes = (uint32_t)cut->entries.count;
     record->cut_hash = hash_of(cut);
     record->limited = cut->limited;
