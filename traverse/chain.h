@@ -14,7 +14,9 @@
 #include "traverse/evaluate.h"
 #include "traverse/heap.h"
 
-enum { PROM_CHAIN_MAX = 8 };
+// Measured on towns of ten levels: 8 states lose 2.6 % of what could be gained and make a sixth
+// of the cut flip from frame to frame, 24 lose 0.06 % in the same time, and 64 no less.
+enum { PROM_CHAIN_MAX = 24 };
 
 // A prefix of the children's steps in merged order: all with a slope above `slope`, and of
 // those with this very slope the ones of children up to `child`. A child has no two steps of

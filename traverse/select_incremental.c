@@ -24,7 +24,8 @@ typedef struct incremental_state {
     prom_bound *bound;
     prom_steady steady;
     prom_last_cut last;
-    double price; // at which steps were bought in the last frame
+    double price;       // at which steps were bought in the last frame
+    bool stopped_short; // above something that would be visibly better
 } incremental_state;
 
 static void *create(const prom_model *model)
@@ -67,7 +68,9 @@ static bool open_near(void *user, uint32_t node)
     if (!prom_eval_open_visible(&s->eval, node)) return false;
     if (is_known(&s->last, node)) return true;
     uint32_t parent = s->eval.model->parent[node];
-    return parent == PROM_NONE || s->last.rep[parent] == PROM_NONE;
+    bool open = parent == PROM_NONE || s->last.rep[parent] == PROM_NONE;
+    s->stopped_short = s->stopped_short || !open;
+    return open;
 }
 
 // ---- what is drawn to begin with
@@ -117,23 +120,31 @@ static double change_cut(incremental_state *s, double budget)
     return refused;
 }
 
+// Evaluates what is near the last cut, or all, and changes the cut. Returns as change_cut;
+// below 0 if nothing is within the budget.
+static double select_among(incremental_state *s, const prom_selection *selection, bool near,
+                           prom_cut *cut)
+{
+    prom_eval *eval = &s->eval;
+    prom_eval_run(eval, selection, near ? open_near : prom_eval_open_visible,
+                  near ? (void *)s : eval);
+    prom_eval_begin_cut(eval, cut);
+    // Rounding of the running sum must not lift the finished cut over the budget.
+    double budget = selection->budget_ms * (1.0 - 1e-9) - eval->fixed_ms;
+    bool fits = !eval->nodes[0].culled && eval->nodes[0].cmin <= budget;
+    return fits ? change_cut(s, budget) : -1.0;
+}
+
 static void select_incremental(void *pointer, const prom_selection *selection, prom_cut *cut)
 {
     incremental_state *s = pointer;
     prom_eval *eval = &s->eval;
-    double refused = 0.0;
-    bool fits = false;
-    for (int again = 0; again < 2 && !fits; again++) {
-        // The neighbourhood may hold no cut within the budget where the whole tree does.
-        bool whole = again || !s->last.number;
-        prom_eval_run(eval, selection, whole ? prom_eval_open_visible : open_near,
-                      whole ? (void *)eval : s);
-        // Rounding of the running sum must not lift the finished cut over the budget.
-        double budget = selection->budget_ms * (1.0 - 1e-9) - eval->fixed_ms;
-        fits = !eval->nodes[0].culled && eval->nodes[0].cmin <= budget;
-        prom_eval_begin_cut(eval, cut);
-        if (fits) refused = change_cut(s, budget);
-        if (whole) break;
+    s->stopped_short = false;
+    double refused = select_among(s, selection, s->last.number > 0, cut);
+    bool fits = refused >= 0.0;
+    if (s->last.number && (!fits || (refused == 0.0 && s->stopped_short))) {
+        refused = select_among(s, selection, false, cut);
+        fits = refused >= 0.0;
     }
     if (fits)
         prom_moves_emit(&s->moves, cut);
