@@ -3,9 +3,11 @@
 #include "metaobj/base/alloc.h"
 #include "metaobj/base/clock.h"
 #include "metaobj/base/log.h"
+#include "metaobj/base/threads.h"
 #include "render/renderer_private.h"
 
 #include <math.h>
+#include <time.h>
 
 #define TEST_SIZE 512u
 #define TEST_MS 4.0 // work long enough to be told from call overhead
@@ -16,8 +18,8 @@
 struct prom_timer {
     prom_renderer *renderer;
     GLuint query;
-    bool uses_queries;
-    double start_ms;
+    bool uses_queries, software;
+    double start_ms, busy_start_ms, busy_ms;
 };
 
 // ---- the self-test: opaque layers, back to front, over a small picture, as many as take a few
@@ -130,6 +132,7 @@ prom_timer *prom_timer_create(prom_renderer *renderer)
 {
     prom_timer *timer = prom_calloc(1, sizeof *timer);
     timer->renderer = renderer;
+    timer->software = prom_context_is_software(renderer->context);
     glCreateQueries(GL_TIME_ELAPSED, 1, &timer->query);
     timer->uses_queries = self_test(renderer, timer->query);
     prom_log(PROM_LOG_DEBUG, "timing by %s",
@@ -149,9 +152,29 @@ bool prom_timer_uses_queries(const prom_timer *timer)
     return timer->uses_queries;
 }
 
+static double clock_of(clockid_t id)
+{
+    struct timespec t;
+    clock_gettime(id, &t);
+    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
+
+static double busy_clock(const prom_timer *timer)
+{
+    if (!timer->software) return 0;
+    double own = clock_of(CLOCK_THREAD_CPUTIME_ID), all = clock_of(CLOCK_PROCESS_CPUTIME_ID);
+    return own + (all - own) / prom_thread_count();
+}
+
+double prom_timer_busy_ms(const prom_timer *timer)
+{
+    return timer->busy_ms;
+}
+
 void prom_timer_begin(prom_timer *timer)
 {
     glFinish();
+    timer->busy_start_ms = busy_clock(timer);
     timer->start_ms = prom_clock_ms();
     if (timer->uses_queries) glBeginQuery(GL_TIME_ELAPSED, timer->query);
 }
@@ -160,7 +183,9 @@ double prom_timer_end(prom_timer *timer)
 {
     if (!timer->uses_queries) {
         glFinish();
-        return prom_clock_ms() - timer->start_ms;
+        double end_ms = prom_clock_ms();
+        timer->busy_ms = busy_clock(timer) - timer->busy_start_ms;
+        return end_ms - timer->start_ms;
     }
     GLuint64 ns = 0;
     glEndQuery(GL_TIME_ELAPSED);

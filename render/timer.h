@@ -16,5 +16,10 @@ bool prom_timer_uses_queries(const prom_timer *timer);
 void prom_timer_begin(prom_timer *timer);
 // Waits for the work since begin and returns its milliseconds.
 double prom_timer_end(prom_timer *timer);
+// What that work kept the processors busy for on a software device, as milliseconds of all of
+// them together: the time of the calling thread, and that of the others divided by the
+// processors. Near what it takes where nothing disturbs it, and the same where something does.
+// 0 on hardware.
+double prom_timer_busy_ms(const prom_timer *timer);
 
 #endif

@@ -49,9 +49,15 @@ static void calibration_covers_all_features(void **state)
         int shadings = 0;
         most.hidden = fmax(most.hidden, f->hidden);
         most.edges = fmax(most.edges, f->edges);
+        most.binds = fmax(most.binds, f->binds);
+        most.upload_bytes = fmax(most.upload_bytes, f->upload_bytes);
+        assert_true(f->binds <= f->draws && (f->draws > 0) == (f->binds > 0));
+        // Uploads come alone, and changes of state with little else.
+        assert_true(!(f->upload_bytes > 0 && f->draws > 0));
+        assert_true(f->binds <= 1 || (f->draws <= 512 && f->triangles <= 512 * 12));
         for (int s = 0; s < PROM_COST_KINDS; s++) {
             most.pixels[s] = fmax(most.pixels[s], f->pixels[s]);
-            shadings += f->pixels[s] > 0;
+            shadings += f->pixels[s] > 0 && (s == PROM_SHADE_PLAIN ? f->binds <= 1 : true);
             // Impostors stand side by side; of the others up to six layers are drawn front to
             // back, and only within a layer one may be shaded over another.
             bool impostor = s == PROM_SHADE_IMPOSTOR || s == PROM_COST_IMPOSTOR_LIT;
@@ -66,6 +72,8 @@ static void calibration_covers_all_features(void **state)
     // Behind up to five layers.
     assert_true(most.hidden > 1.5 * 320 * 180 && most.hidden < 5.0 * 320 * 180);
     assert_true(most.edges > 320 * 180 && isfinite(most.edges));
+    assert_true(most.binds > 50);
+    assert_true(most.upload_bytes > 2e6 && most.upload_bytes <= 8e6);
     for (int s = 0; s < PROM_COST_KINDS; s++) assert_true(most.pixels[s] > 0.25 * 320 * 180);
     assert_true(most.pixels[PROM_SHADE_BLENDED] > 320 * 180 * 0.7);
 
