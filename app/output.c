@@ -170,6 +170,25 @@ static char *dump(json_t *json)
     return text;
 }
 
+prom_status prom_output_begin_text(prom_output_text *file, const char *path, prom_error *error)
+{
+    *file = (prom_output_text){.path = path};
+    file->out = open_memstream(&file->text, &file->bytes);
+    if (file->out) return PROM_OK;
+    return prom_fail(error, PROM_ERR_OUTPUT, "%s: %s", path, strerror(errno));
+}
+
+prom_status prom_output_end_text(prom_output_text *file, prom_error *error)
+{
+    prom_status status;
+    if (fclose(file->out) != 0)
+        status = prom_fail(error, PROM_ERR_OUTPUT, "%s: %s", file->path, strerror(errno));
+    else
+        status = prom_output_write(file->path, file->text, file->bytes, error);
+    free(file->text); // from the C library
+    return status;
+}
+
 prom_status prom_output_write_json(const char *path, json_t *json, prom_error *error)
 {
     char *text = dump(json);

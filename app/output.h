@@ -6,6 +6,7 @@
 
 #include <jansson.h>
 #include <stddef.h>
+#include <stdio.h>
 
 enum { PROM_FILES_MAX = 4 };
 
@@ -25,6 +26,15 @@ prom_status prom_output_make_folder(const char *path, prom_error *error);
 // Writes PATH.part and renames it. `path` has been checked.
 prom_status prom_output_write(const char *path, const char *text, size_t bytes,
                               prom_error *error);
+// A longer text: begin, print to `out`, then end, which writes it the same way and frees it.
+typedef struct prom_output_text {
+    const char *path;
+    FILE *out;
+    char *text;
+    size_t bytes;
+} prom_output_text;
+prom_status prom_output_begin_text(prom_output_text *file, const char *path, prom_error *error);
+prom_status prom_output_end_text(prom_output_text *file, prom_error *error);
 // The same for JSON, indented; takes the reference to `json`, also on failure.
 prom_status prom_output_write_json(const char *path, json_t *json, prom_error *error);
 // JSON values that cannot fail: null for what is not finite; bytes that are not UTF-8 as `?`.

@@ -1,36 +1,38 @@
 #include "app/scatter.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 // Pixels of the picture.
 enum { WIDTH = 760, HEIGHT = 700, LEFT = 84, TOP = 74, SIDE = 556, LEGEND = LEFT + SIDE + 16 };
 
-// Okabe and Ito 2008: told apart with every kind of colour vision.
+// Okabe and Ito 2008: told apart with every kind of colour vision; and a grey.
 static const char *const colours[PROM_SCATTER_GROUPS] = {"#0072b2", "#d55e00", "#009e73",
-                                                         "#cc79a7"};
+                                                         "#cc79a7", "#e69f00", "#56b4e9",
+                                                         "#000",    "#f0e442", "#888"};
 
-// Up to about so many pixels the axes are linear, beyond them logarithmic.
-#define LINEAR_PX 10.0
-#define MARGIN 0.04 // of the axes, around the points
+enum { FORMS = 4 };
+#define FINE_DECADES 3.0 // on axes up to so long, twos and fives have lines too
+#define MARGIN 0.04      // of the axes, around the points
 
 typedef struct canvas {
     FILE *out;
-    double low, high; // of both axes, on their scale
+    double linear, low, high; // of both axes; low and high on their scale
 } canvas;
 
-static double scaled(double value)
+static double scaled(const canvas *c, double value)
 {
-    return asinh(value / LINEAR_PX);
+    return asinh(value / c->linear);
 }
 
 static double across(const canvas *c, double value)
 {
-    return LEFT + SIDE * (scaled(value) - c->low) / (c->high - c->low);
+    return LEFT + SIDE * (scaled(c, value) - c->low) / (c->high - c->low);
 }
 
 static double down(const canvas *c, double value)
 {
-    return TOP + SIDE * (c->high - scaled(value)) / (c->high - c->low);
+    return TOP + SIDE * (c->high - scaled(c, value)) / (c->high - c->low);
 }
 
 // Names come from files.
@@ -59,16 +61,17 @@ static void put_line(FILE *out, double x0, double y0, double x1, double y1, cons
             class, x0, y0, x1, y1);
 }
 
-// Markers of one area, also told apart by their form: disc, square, triangle, diamond. They
-// stand at (0,0).
-static void put_marker(FILE *out, uint32_t group)
+// Markers of one area, also told apart by their form: disc, square, triangle, diamond, in turn.
+// They stand at (0,0).
+static const char markers[] = "<circle id=\"m0\" r=\"3.4\"/>\n"
+                              "<rect id=\"m1\" x=\"-3\" y=\"-3\" width=\"6\" height=\"6\"/>\n"
+                              "<path id=\"m2\" d=\"M0,-4.4 L4,2.8 L-4,2.8 Z\"/>\n"
+                              "<path id=\"m3\" d=\"M0,-4.3 L4.3,0 L0,4.3 L-4.3,0 Z\"/>\n";
+
+static void put_marker(FILE *out, uint32_t group, double x, double y)
 {
-    static const char *const forms[PROM_SCATTER_GROUPS] = {
-        "<circle id=\"m0\" r=\"3.4\"/>",
-        "<rect id=\"m1\" x=\"-3\" y=\"-3\" width=\"6\" height=\"6\"/>",
-        "<path id=\"m2\" d=\"M0,-4.4 L4,2.8 L-4,2.8 Z\"/>",
-        "<path id=\"m3\" d=\"M0,-4.3 L4.3,0 L0,4.3 L-4.3,0 Z\"/>"};
-    fprintf(out, "%s\n", forms[group]);
+    fprintf(out, "<use href=\"#m%u\" class=\"g%u\" x=\"%.1f\" y=\"%.1f\"/>\n", group % FORMS,
+            group, x, y);
 }
 
 static void begin(FILE *out, uint32_t groups)
@@ -87,14 +90,15 @@ static void begin(FILE *out, uint32_t groups)
     for (uint32_t g = 0; g < groups; g++)
         fprintf(out, ".g%u { fill: %s; fill-opacity: 0.55; stroke: %s; stroke-width: 0.6; }\n",
                 g, colours[g], colours[g]);
-    fputs("</style>\n<defs>\n", out);
-    for (uint32_t g = 0; g < groups; g++) put_marker(out, g);
-    fprintf(out, "</defs>\n<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n", WIDTH, HEIGHT);
+    fprintf(out,
+            "</style>\n<defs>\n%s</defs>\n"
+            "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",
+            markers, WIDTH, HEIGHT);
 }
 
 static void put_tick(const canvas *c, double value)
 {
-    if (scaled(value) < c->low || scaled(value) > c->high) return;
+    if (scaled(c, value) < c->low || scaled(c, value) > c->high) return;
     char text[32];
     double x = across(c, value), y = down(c, value);
     const char *class = value == 0 ? "axis" : "grid";
@@ -107,12 +111,15 @@ static void put_tick(const canvas *c, double value)
 
 static void put_axes(const canvas *c, const prom_scatter *plot)
 {
+    static const double steps[3] = {1, 2, 5};
     char attributes[128];
+    bool fine = c->high < asinh(pow(10.0, FINE_DECADES));
     put_tick(c, 0);
-    for (double value = LINEAR_PX; value < 1e12; value *= 10) {
-        put_tick(c, value);
-        put_tick(c, -value);
-    }
+    for (double value = c->linear; scaled(c, value) < fmax(c->high, -c->low); value *= 10)
+        for (int i = 0; i < (fine ? 3 : 1); i++) {
+            put_tick(c, steps[i] * value);
+            put_tick(c, -steps[i] * value);
+        }
     fprintf(c->out,
             "<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" fill=\"none\" "
             "stroke=\"#9a9a9a\"/>\n",
@@ -129,8 +136,7 @@ static void put_points(const canvas *c, const prom_scatter *plot)
 {
     for (size_t i = 0; i < plot->count; i++) {
         const prom_scatter_point *p = &plot->points[i];
-        fprintf(c->out, "<use href=\"#m%u\" class=\"g%u\" x=\"%.1f\" y=\"%.1f\"/>\n", p->group,
-                p->group, across(c, p->x), down(c, p->y));
+        put_marker(c->out, p->group, across(c, p->x), down(c, p->y));
     }
 }
 
@@ -138,23 +144,26 @@ static void put_legend(FILE *out, const prom_scatter *plot)
 {
     double y = TOP + 14;
     for (uint32_t g = 0; g < plot->group_count; g++, y += 22) {
-        fprintf(out, "<use href=\"#m%u\" class=\"g%u\" x=\"%d\" y=\"%.1f\"/>\n", g, g,
-                LEGEND + 5, y - 4);
+        put_marker(out, g, LEGEND + 5, y - 4);
         put_text(out, LEGEND + 16, y, "", plot->groups[g]);
     }
 }
 
-// Both axes reach over all values, 0 and the linear part.
+// Both axes reach over all values, 0 and the linear part, to both sides if values do.
 static canvas canvas_of(const prom_scatter *plot, FILE *out)
 {
-    double least = -LINEAR_PX, most = LINEAR_PX;
+    double least = 0, most = plot->linear;
     for (size_t i = 0; i < plot->count; i++) {
         const prom_scatter_point *p = &plot->points[i];
         least = fmin(least, fmin(p->x, p->y));
         most = fmax(most, fmax(p->x, p->y));
     }
-    double low = scaled(least), high = scaled(most), margin = MARGIN * (high - low);
-    return (canvas){out, low - margin, high + margin};
+    if (least < 0) least = fmin(least, -plot->linear);
+    canvas c = {.out = out, .linear = plot->linear};
+    double low = scaled(&c, least), high = scaled(&c, most), margin = MARGIN * (high - low);
+    c.low = low - margin;
+    c.high = high + margin;
+    return c;
 }
 
 void prom_scatter_write(const prom_scatter *plot, FILE *out)

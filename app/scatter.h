@@ -1,6 +1,6 @@
-// A scatter plot as SVG: two quantities in pixels that should be equal, in groups of a colour
-// and a marker each. Both axes have one scale, on which small values of either sign can be seen
-// beside large ones: asinh(x / 10), linear up to 10 pixels, then logarithmic. Equal values lie
+// A scatter plot as SVG: two quantities that should be equal, in groups of a colour and a
+// marker each. Both axes have one scale, on which small values of either sign can be seen
+// beside large ones: asinh(x / linear), linear up to there, then logarithmic. Equal values lie
 // on the diagonal, which is drawn.
 #ifndef PROM_APP_SCATTER_H
 #define PROM_APP_SCATTER_H
@@ -9,7 +9,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#define PROM_SCATTER_GROUPS 4 // at most
+#define PROM_SCATTER_GROUPS 9 // at most
 
 typedef struct prom_scatter_point {
     double x, y; // finite
@@ -18,6 +18,7 @@ typedef struct prom_scatter_point {
 
 typedef struct prom_scatter {
     const char *title, *subtitle, *x_label, *y_label;
+    double linear;                           // a power of ten
     const char *groups[PROM_SCATTER_GROUPS]; // for the legend
     uint32_t group_count;
     const prom_scatter_point *points;

@@ -2,9 +2,7 @@
 
 #include "app/scatter.h"
 
-#include <errno.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 static bool is_to_kind(const prom_swap *swap, uint32_t kind)
 {
@@ -44,33 +42,6 @@ json_t *prom_swap_json(const prom_swap_result *result)
 
 // ---- files
 
-// A text that is written whole when it is complete.
-typedef struct text_file {
-    const char *path;
-    char *text;
-    size_t bytes;
-    FILE *out;
-} text_file;
-
-static prom_status begin_text(text_file *file, const char *path, prom_error *error)
-{
-    *file = (text_file){.path = path};
-    file->out = open_memstream(&file->text, &file->bytes);
-    if (file->out) return PROM_OK;
-    return prom_fail(error, PROM_ERR_OUTPUT, "%s: %s", path, strerror(errno));
-}
-
-static prom_status end_text(text_file *file, prom_error *error)
-{
-    prom_status status;
-    if (fclose(file->out) != 0)
-        status = prom_fail(error, PROM_ERR_OUTPUT, "%s: %s", file->path, strerror(errno));
-    else
-        status = prom_output_write(file->path, file->text, file->bytes, error);
-    free(file->text); // from the C library
-    return status;
-}
-
 static void put_quoted(FILE *out, const char *text)
 {
     fputc('"', out);
@@ -84,8 +55,8 @@ static void put_quoted(FILE *out, const char *text)
 prom_status prom_swap_write_csv(const char *path, const prom_model *model,
                                 const prom_swap_result *result, prom_error *error)
 {
-    text_file file;
-    prom_status status = begin_text(&file, path, error);
+    prom_output_text file;
+    prom_status status = prom_output_begin_text(&file, path, error);
     if (status) return status;
     fputs("frame,node,name,cluster,kind_from,kind_to,level_from,level_to,size_px,px,predicted,"
           "predicted_selector,measured\n",
@@ -99,14 +70,14 @@ prom_status prom_swap_write_csv(const char *path, const prom_model *model,
                 s->level_from, s->level_to, (double)s->size_px, s->px, s->predicted,
                 s->predicted_selector, s->measured);
     }
-    return end_text(&file, error);
+    return prom_output_end_text(&file, error);
 }
 
 prom_status prom_swap_write_plot(const char *path, const char *scene,
                                  const prom_swap_result *result, prom_error *error)
 {
-    text_file file;
-    prom_status status = begin_text(&file, path, error);
+    prom_output_text file;
+    prom_status status = prom_output_begin_text(&file, path, error);
     if (status) return status;
     size_t count = result->swaps.count;
     prom_scatter_point *points = prom_alloc(count, sizeof *points);
@@ -124,6 +95,7 @@ prom_status prom_swap_write_plot(const char *path, const char *scene,
         .subtitle = subtitle,
         .x_label = "predicted change of the error sum, pixels (logarithmic beyond 10)",
         .y_label = "measured change, pixels (logarithmic beyond 10)",
+        .linear = 10,
         .group_count = PROM_SWAP_KINDS,
         .points = points,
         .count = count,
@@ -133,7 +105,7 @@ prom_status prom_swap_write_plot(const char *path, const char *scene,
     prom_free(points);
     prom_free(title);
     prom_free(subtitle);
-    return end_text(&file, error);
+    return prom_output_end_text(&file, error);
 }
 
 // ---- text
