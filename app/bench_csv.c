@@ -1,5 +1,6 @@
 #include "app/bench_csv.h"
 
+#include "app/budget_use.h"
 #include "app/output.h"
 #include "app/statistics.h"
 
@@ -33,6 +34,7 @@ static void put_row(FILE *out, size_t frame, double budget_ms, double start_unix
     fprintf(out, "%zu,%.4f,%g,%.4f,%.4f,%.4f,%.0f,%.0f,%u,%u,%.1f,%.1f,%d", frame, r->t_s,
             budget_ms, r->frame_ms, r->select_ms, r->predicted_ms, r->triangles, r->draws,
             r->cut_nodes, r->switches.count, r->benefit_px, r->loss_px, r->feasible);
+    fprintf(out, ",%d", prom_is_contested(r));
     put_guarantee(out, start_unix_s, r);
     const prom_difference *d = &r->difference;
     bool quality = d->found & PROM_COMPARE_QUALITY;
@@ -54,7 +56,7 @@ prom_status prom_bench_write_csv(const char *path, const prom_loop_options *opti
     FILE *out = open_memstream(&text, &bytes);
     if (!out) return prom_fail(error, PROM_ERR_OUTPUT, "%s: %s", path, strerror(errno));
     fputs("frame,t_s,budget_ms,frame_ms,select_ms,predicted_ms,triangles,draws,cut_nodes,"
-          "switches,benefit_px,loss_px,feasible,limited,gap,allowed_ms,scale,margin,"
+          "switches,benefit_px,loss_px,feasible,contested,limited,gap,allowed_ms,scale,margin,"
           "start_unix_s,cut_hash,holes,accuracy,predicted_accuracy,flip,loss,hidden_cost,"
           "hidden_nodes\n",
           out);

@@ -6,7 +6,7 @@
 
 bool prom_is_contested(const prom_frame_record *record)
 {
-    return record->feasible && record->limited;
+    return record->fits && record->limited;
 }
 
 // values: room for one of each record; returns how many there are.
@@ -81,13 +81,17 @@ static void add_turns(const prom_frame_record *records, size_t count, double bud
     }
 }
 
-static void add_gap(const prom_frame_record *records, size_t count, prom_budget_report *report)
+static prom_gap_report gap_of(const prom_frame_record *records, size_t count,
+                              prom_frame_wanted *wanted)
 {
-    double *gaps = prom_alloc(count, sizeof *gaps);
+    prom_gap_report gap = {0};
+    double *shares = prom_alloc(count, sizeof *shares);
     for (size_t i = 0; i < count; i++)
-        if (!isnan(records[i].gap)) gaps[report->gap_frames++] = records[i].gap;
-    if (report->gap_frames) report->gap = prom_spread_of(gaps, report->gap_frames);
-    prom_free(gaps);
+        if (!isnan(records[i].gap) && (!wanted || wanted(&records[i])))
+            shares[gap.frames++] = records[i].gap;
+    if (gap.frames) gap.share = prom_spread_of(shares, gap.frames);
+    prom_free(shares);
+    return gap;
 }
 
 static void add_floor(const prom_noise_floor *floor, prom_budget_report *report)
@@ -114,6 +118,8 @@ prom_budget_report prom_budget_report_of(const prom_loop_result *result, double 
         .all = prom_budget_use_of(records, count, budget_ms, NULL),
         .contested = prom_budget_use_of(records, count, budget_ms, prom_is_contested),
         .cold = prom_budget_use_of(result->cold.data, result->cold.count, budget_ms, NULL),
+        .gap = gap_of(records, count, NULL),
+        .contested_gap = gap_of(records, count, prom_is_contested),
     };
     for (size_t i = 0; i < count; i++) {
         report.limited_frames += records[i].limited;
@@ -124,7 +130,6 @@ prom_budget_report prom_budget_report_of(const prom_loop_result *result, double 
     }
     add_quarters(records, count, budget_ms, &report);
     add_turns(records, count, budget_ms, &report);
-    add_gap(records, count, &report);
     add_floor(&result->floor, &report);
     return report;
 }

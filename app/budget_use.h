@@ -17,7 +17,9 @@ typedef struct prom_budget_use {
 } prom_budget_use;
 
 typedef bool prom_frame_wanted(const prom_frame_record *record);
-// Full detail was predicted to exceed the budget, and the cheapest cut to fit.
+// The choice mattered: full detail was predicted at more than could be spent, and the cheapest
+// cut was expected to fit. The latter without the margin: a wide one must not take the frames
+// away that it is to be judged by.
 prom_frame_wanted prom_is_contested;
 
 // Over the wanted ones of `count` frames in a row; wanted: NULL takes all. A run, and a change,
@@ -25,17 +27,22 @@ prom_frame_wanted prom_is_contested;
 prom_budget_use prom_budget_use_of(const prom_frame_record *records, size_t count,
                                    double budget_ms, prom_frame_wanted *wanted);
 
+// Of the normalised gap (traverse/bound.h).
+typedef struct prom_gap_report {
+    uint32_t frames; // where it was known
+    prom_spread share;
+} prom_gap_report;
+
 enum { PROM_QUARTERS = 4, PROM_TURN_FRAMES = 100 };
 
 typedef struct prom_budget_report {
     prom_budget_use all, contested, cold;
     uint32_t quarter_misses[PROM_QUARTERS], quarter_frames[PROM_QUARTERS];
     uint32_t limited_frames;
-    uint32_t turns, most_after_turn; // misses in the PROM_TURN_FRAMES frames from a turn on
-    double scale, margin;            // means
-    uint32_t gap_frames;             // where it was known
-    prom_spread gap;
-    uint32_t floor_draws; // 0: not asked for
+    uint32_t turns, most_after_turn;    // misses in the PROM_TURN_FRAMES frames from a turn on
+    double scale, margin;               // means
+    prom_gap_report gap, contested_gap; // 0 by definition where the cheapest cut is too dear
+    uint32_t floor_draws;               // 0: not asked for
     prom_spread floor_ms;
     double use_of_floor, std_of_floor; // contested use / the floor's mean/p99; ratio of the
                                        // stds. NAN without the one or the other

@@ -109,6 +109,8 @@ prom_frame_record prom_frame_step_draw(prom_frame_step *step, const prom_camera 
         .draws = (double)stats.draws,
         .switches = switches,
         .feasible = step->cut.cmin_ms <= allowed,
+        .fits = prom_guarantee_expected(guarantee, step->cut.cmin_ms) + guarantee->charge_ms <=
+                guarantee->options.budget_ms,
     };
     describe(&step->cut, &record);
     return record;

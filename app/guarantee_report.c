@@ -48,14 +48,14 @@ static json_t *use_json(const prom_budget_use *use)
     return json;
 }
 
-static json_t *gap_json(const prom_budget_report *r)
+static json_t *gap_json(const prom_gap_report *gap)
 {
-    if (!r->gap_frames) return json_null();
+    if (!gap->frames) return json_null();
     json_t *json = json_object();
-    set(json, "frames", json_integer(r->gap_frames));
-    set_number(json, "mean", r->gap.mean);
-    set_number(json, "p50", r->gap.p50);
-    set_number(json, "p99", r->gap.p99);
+    set(json, "frames", json_integer(gap->frames));
+    set_number(json, "mean", gap->share.mean);
+    set_number(json, "p50", gap->share.p50);
+    set_number(json, "p99", gap->share.p99);
     return json;
 }
 
@@ -102,9 +102,11 @@ void prom_guarantee_add_json(json_t *run, const prom_run_facts *facts,
                              const prom_budget_report *report)
 {
     const prom_budget_report *r = report;
+    json_t *contested = use_json(&r->contested);
     json_t *turns = json_object(), *guarantee = json_object();
     set_misses(run, facts, r);
-    set(run, "contested", use_json(&r->contested));
+    set(contested, "gap", gap_json(&r->contested_gap));
+    set(run, "contested", contested);
     set(run, "cold_start", use_json(&r->cold));
     set(turns, "turns", json_integer(r->turns));
     set(turns, "most_misses", json_integer(r->most_after_turn));
@@ -113,7 +115,7 @@ void prom_guarantee_add_json(json_t *run, const prom_run_facts *facts,
     set_number(guarantee, "scale", r->scale);
     set_number(guarantee, "margin", r->margin);
     set(run, "guarantee", guarantee);
-    set(run, "gap", gap_json(r));
+    set(run, "gap", gap_json(&r->gap));
     set(run, "limited_frames", json_integer(r->limited_frames));
     set(run, "noise_floor", floor_json(r, &facts->result->floor));
     set_number(run, "use_of_floor", r->use_of_floor);
@@ -145,6 +147,13 @@ static void print_all(const prom_run_facts *facts, const prom_budget_report *r)
            100 * r->margin, facts->session->frozen ? ", frozen" : "");
 }
 
+static void print_gap(const char *what, const prom_gap_report *gap)
+{
+    if (!gap->frames) return;
+    printf("%-10s gap mean %.2f %%, p50 %.2f, p99 %.2f in %u frames\n", what,
+           100 * gap->share.mean, 100 * gap->share.p50, 100 * gap->share.p99, gap->frames);
+}
+
 static void print_floor(const prom_budget_report *r, const prom_noise_floor *floor)
 {
     const prom_spread *t = &r->floor_ms;
@@ -171,9 +180,8 @@ void prom_guarantee_print(const prom_run_facts *facts, const prom_budget_report 
     if (r->turns)
         printf("turns      %u fast ones; at most %u misses in %d frames from one on\n",
                r->turns, r->most_after_turn, PROM_TURN_FRAMES);
-    if (r->gap_frames)
-        printf("gap        mean %.2f %%, p50 %.2f, p99 %.2f in %u frames\n", 100 * r->gap.mean,
-               100 * r->gap.p50, 100 * r->gap.p99, r->gap_frames);
+    print_gap("selection", &r->gap);
+    print_gap("contested", &r->contested_gap);
     if (r->floor_draws) print_floor(r, &facts->result->floor);
     printf("cuts       %016" PRIx64 "\n", r->cuts_hash);
 }

@@ -13,12 +13,14 @@
 //     (of the run: count in each), overshoot: mean of frame time / budget - 1
 //   use_of_budget: mean frame time / budget
 //   contested: of the frames where full detail was predicted to exceed the budget and the
-//     cheapest cut to fit: frames, use_of_budget, std_ms, and misses as above but quarters
+//     cheapest cut, without a margin, to fit: frames, use_of_budget, std_ms, and misses as
+//     above but quarters
 //   cold_start: the same of the first 30 frames drawn, warm-up included
 //   after_turn: turns (the camera turned by more than 30 degrees in a frame, or jumped),
 //     most_misses in the 100 frames from one on
 //   guarantee: frozen (with a profile), mean scale and margin
-//   gap: frames, mean, p50, p99, see traverse/bound.h; null where no bound was known
+//   gap, and contested.gap: frames, mean, p50, p99, see traverse/bound.h; null where no bound
+//     was known; 0 by definition where the cheapest cut is too dear
 //   limited_frames: where more time would have bought a better picture
 //   noise_floor: draws, frame (of the path), target_ms, chosen_ms, mean, p50, p95, p99, std,
 //     mean_of_p99; use_of_floor: contested use_of_budget / mean_of_p99; std_of_floor: contested

@@ -25,7 +25,7 @@ static void steady(run *r, size_t count)
     *r = (run){0};
     for (size_t i = 0; i < count; i++)
         r->frames[i] =
-            (prom_frame_record){.frame_ms = 8, .feasible = true, .limited = true, .gap = NAN};
+            (prom_frame_record){.frame_ms = 8, .fits = true, .limited = true, .gap = NAN};
     r->result.frames.data = r->frames;
     r->result.frames.count = count;
 }
@@ -56,7 +56,7 @@ static void frames_that_are_not_wanted_do_not_count(void **state)
     // Two misses with one between that more time would not have made better.
     for (int i = 1; i < 4; i++) r.frames[i].frame_ms = 12;
     r.frames[2].limited = false;
-    r.frames[5].feasible = false;
+    r.frames[5].fits = false;
     r.frames[5].frame_ms = 30;
     prom_budget_use use = prom_budget_use_of(r.frames, 6, BUDGET, prom_is_contested);
     assert_int_equal(use.frames, 4);
@@ -129,13 +129,17 @@ static void a_gap_counts_where_it_is_known(void **state)
     run r;
     steady(&r, 10);
     prom_budget_report report = prom_budget_report_of(&r.result, BUDGET);
-    assert_int_equal(report.gap_frames, 0);
+    assert_int_equal(report.gap.frames, 0);
     r.frames[3].gap = 0.25;
     r.frames[7].gap = 0.05;
     report = prom_budget_report_of(&r.result, BUDGET);
-    assert_int_equal(report.gap_frames, 2);
-    NEAR(report.gap.mean, 0.15);
-    NEAR(report.gap.p99, 0.25);
+    assert_int_equal(report.gap.frames, 2);
+    NEAR(report.gap.share.mean, 0.15);
+    NEAR(report.gap.share.p99, 0.25);
+    r.frames[7].fits = false;
+    report = prom_budget_report_of(&r.result, BUDGET);
+    assert_int_equal(report.contested_gap.frames, 1);
+    NEAR(report.contested_gap.share.mean, 0.25);
 }
 
 static void every_cut_counts_in_the_hash_of_a_run(void **state)

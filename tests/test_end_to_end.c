@@ -246,11 +246,12 @@ static void check_csv(const char *path)
     assert_int_equal(strncmp(text, "frame,t_s,budget_ms,frame_ms,select_ms,", 39), 0);
     // Every row has all fields; those of the comparison, the last ones, are empty where none
     // was made.
-    int compared = 0;
+    int compared = 0, fields = 0;
     for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n")) {
         int commas = 0;
         for (const char *c = line; *c; c++) commas += *c == ',';
-        assert_int_equal(commas, 26);
+        fields = fields ? fields : commas;
+        assert_int_equal(commas, fields); // the header's
         compared += line[strlen(line) - 1] != ',';
     }
     assert_int_equal(compared, 1 + 3);

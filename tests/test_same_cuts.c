@@ -140,8 +140,8 @@ static void the_same_path_has_the_same_cuts(void **state)
 {
     (void)state;
     NEED_DEVICE();
-    const char *const selectors[] = {"greedy", "meta"};
-    for (int s = 0; s < 2; s++) {
+    const char *const selectors[] = {"greedy", "meta", "lagrange", "incremental", "feedback"};
+    for (size_t s = 0; s < sizeof selectors / sizeof *selectors; s++) {
         choices first = choices_of(selectors[s], "1.6", "--profile p.json");
         // Slower, and with other work between the frames.
         pid_t load = start_load();
