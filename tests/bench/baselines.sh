@@ -11,12 +11,13 @@
 #     -S NAME what they are compared with (the program's default)
 #     -B LIST baselines ("meta funkhouser feedback distance pixels sse")
 #
-# MODEL is a .prom file, PATH a camera path or `auto`. For each budget the default walks first; then
-# each baseline's parameter is searched until its p95 is within 5 % of that: --budget-ms of `meta`,
-# `funkhouser` and `feedback`, --rule-scale of the others, doubled or halved until the time is
-# passed, then by bisection. Where none does (within 1/64 to 64 of where it began), the nearest is
-# kept, and `ratio` says how far off it is. Both are then measured once more, one after the other;
-# these are the rows. In bold: FLIP and loss that are less than the default's.
+# MODEL is a .prom file, PATH a camera path or `auto`. For each budget, each baseline's parameter is
+# searched until its p95 is within 5 % of the default's, which walks just before it each time:
+# --budget-ms of `meta`, `funkhouser` and `feedback`, --rule-scale of the others, doubled or halved
+# until the time is passed, then by bisection. Where none does (within 1/64 to 64 of where it
+# began), the nearest is kept, and `ratio` says how far off it is. Both then walk once more,
+# compared with full detail; these are the rows. In bold: FLIP and loss that are less than the
+# default's.
 # It measures times, so nothing else should keep the machine busy.
 # Reports stay in FOLDER; FOLDER/baselines.md is the table, also printed.
 set -eu
@@ -84,18 +85,26 @@ p95_of() {
     jq -r '.runs[0].frame_ms.p95' "$out/$1.json"
 }
 
+# pair COMPARED: ours and the baseline one after the other, since what the machine does meanwhile
+# moves both; sets $target and $time, their p95.
+pair() {
+    bench_ours "$1"
+    bench_baseline "$1"
+    target=$(p95_of "$tag-ours")
+    time=$(p95_of "$tag-$baseline")
+    echo "$tag: $baseline at $value has a p95 of $time ms, ours $target" >&2
+}
+
 near() {
     holds "$time / $target <= 1.05 && $time / $target >= 0.95"
 }
 
-# find_factor: from $factor to one at which $baseline's p95 is $target ms; $limit is set when that
+# find_factor: from $factor to one at which $baseline's p95 is that of ours; $limit is set when that
 # would be beyond what is tried.
 find_factor() {
     low="" high="" limit=""
     for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14; do
-        bench_baseline 0
-        time=$(p95_of "$tag-$baseline")
-        echo "$tag: $baseline at $value has a p95 of $time ms, wanted $target" >&2
+        pair 0
         if near; then return; fi
         if holds "$time < $target"; then low=$factor; else high=$factor; fi
         if [ -z "$high" ]; then
@@ -127,17 +136,12 @@ row() {
         "$out/$1.json" "$out/$tag-ours.json"
 }
 
-# What the machine does meanwhile moves both, so the search goes on from a new run of ours when the
-# last pair disagrees.
+# compare: searches, then looks at the pictures; again from there where noise has misled it.
 compare() {
     factor=1
     for _ in 1 2 3; do
-        target=$(p95_of "$tag-ours")
         find_factor
-        bench_ours "$compared"
-        bench_baseline "$compared"
-        target=$(p95_of "$tag-ours")
-        time=$(p95_of "$tag-$baseline")
+        pair "$compared"
         if near || [ -n "$limit" ]; then break; fi
     done
     row "$tag-ours" "$budget ms"
@@ -158,7 +162,6 @@ walk() {
     fi
     for budget in $list; do
         tag=$name-$budget
-        bench_ours 0
         for baseline in $baselines; do compare; done
     done
 }
@@ -167,8 +170,8 @@ walk() {
     echo "| scene | size | budget ms | selector | parameter | mean ms | p95 | ratio | misses % |" \
         "FLIP | loss % | switches | triangles |"
     echo "| --- | --- | ---: | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"
-    for pair in "$@"; do
-        take_walk "$pair"
+    for walk in "$@"; do
+        take_walk "$walk"
         for size in $sizes; do walk; done
     done
 } | tee "$out/baselines.md"
