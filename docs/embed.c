@@ -62,16 +62,20 @@ static prom_status your_upload(embedding *e, uint32_t id, prom_error *error)
     return PROM_OK;
 }
 
-// One entry of the cut: a mesh at a place. A box is a mesh of 12 triangles with the six
-// pictures of rep->texture, or none. An entry may stand for a house or for a whole quarter.
-static void your_draw(const embedding *e, const prom_cut_entry *entry)
+// A mesh at a place: world = origin + basis * position. A box is a mesh of 12 triangles with
+// the six pictures of rep->texture, or none.
+static prom_status your_draw(embedding *e, uint32_t node, const prom_representation *rep,
+                             prom_error *error)
 {
     const prom_model *m = &e->model;
-    const prom_representation *rep = &m->reps[entry->rep];
-    const prom_placement *place = &m->placement[entry->node];
-    printf("  draw node %u \"%s\": %s, mesh %u at %.1f %.1f %.1f\n", entry->node,
-           m->names + m->name[entry->node], prom_rep_kind_name(rep->kind), rep->mesh,
-           place->origin[0], place->origin[1], place->origin[2]);
+    const prom_placement *place = &m->placement[node];
+    // Your renderer will want to do this ahead of time; if not, its time goes to `other_ms`.
+    prom_status status = e->uploaded[rep->mesh] ? PROM_OK : your_upload(e, rep->mesh, error);
+    if (!status)
+        printf("  draw node %u \"%s\": %s, mesh %u at %.1f %.1f %.1f\n", node,
+               m->names + m->name[node], prom_rep_kind_name(rep->kind), rep->mesh,
+               place->origin[0], place->origin[1], place->origin[2]);
+    return status;
 }
 
 // Pixels that show of each entry, as your id buffer or your occlusion queries have it; here
@@ -99,6 +103,21 @@ static prom_camera your_camera(const prom_model *model, int frame)
 
 // ---- a frame
 
+// An entry of the cut may stand for a house or for a whole quarter. Skies and the like are no
+// part of the tree: they are drawn whole, behind everything, and the prediction knows it.
+static prom_status draw_cut(embedding *e, prom_error *error)
+{
+    const prom_model *m = &e->model;
+    prom_status status = PROM_OK;
+    for (size_t i = 0; i < e->cut.entries.count && !status; i++) {
+        const prom_cut_entry *entry = &e->cut.entries.data[i];
+        status = your_draw(e, entry->node, &m->reps[entry->rep], error);
+    }
+    for (uint32_t n = m->tree_count; n < m->node_count && !status; n++)
+        status = your_draw(e, n, &m->reps[m->prototypes[m->prototype[n]].first_rep], error);
+    return status;
+}
+
 static prom_status draw_frame(embedding *e, int frame, prom_error *error)
 {
     prom_camera camera = your_camera(&e->model, frame);
@@ -121,13 +140,8 @@ static prom_status draw_frame(embedding *e, int frame, prom_error *error)
     printf("frame %d: %zu entries, %.2f of %.2f ms, %s, gap at most %.1f %%\n", frame,
            e->cut.entries.count, e->cut.predicted_ms, selection.budget_ms,
            e->cut.feasible ? "fits" : "the least there is", 100 * prom_cut_gap(&e->cut));
-    for (size_t i = 0; i < e->cut.entries.count; i++) {
-        const prom_cut_entry *entry = &e->cut.entries.data[i];
-        uint32_t mesh = e->model.reps[entry->rep].mesh;
-        prom_status status = e->uploaded[mesh] ? PROM_OK : your_upload(e, mesh, error);
-        if (status) return status;
-        your_draw(e, entry);
-    }
+    prom_status status = draw_cut(e, error);
+    if (status) return status;
     your_counts(e);
 
     // From the start of drawing to the finished picture, by your clock. Here the device is a

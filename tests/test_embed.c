@@ -13,7 +13,7 @@
 #include "tests/container_fixture.h"
 #include "tests/run_program.h"
 
-enum { CLUSTERS = 3, LEAVES = 5, FRAMES = 12 };
+enum { CLUSTERS = 3, LEAVES = 5, SKY = 1 + CLUSTERS * (1 + LEAVES), FRAMES = 12 };
 
 static program_run run;
 
@@ -39,7 +39,7 @@ static int leave(void **state)
 
 // What its lines say of a run.
 typedef struct told {
-    unsigned frames, entries, draws, leaves, fitting;
+    unsigned frames, entries, draws, leaves, skies, fitting;
     bool uploaded[FIXTURE_MESHES];
     double predicted_ms, allowed_ms; // of the last frame
 } told;
@@ -54,6 +54,7 @@ static void read_frame(told *t, const char *line)
     assert_int_equal(n, 6);
     assert_int_equal(frame, t->frames++);
     assert_int_equal(t->draws, t->entries); // of the frames before
+    assert_int_equal(t->skies, frame);
     assert_true(gap >= 0 && gap <= 100);
     t->fitting += !strcmp(fits, "fits");
     t->entries += entries;
@@ -69,10 +70,10 @@ static void read_line(told *t, const char *line)
         assert_true(mesh < FIXTURE_MESHES && !t->uploaded[mesh]);
         t->uploaded[mesh] = true;
     } else if (sscanf(line, "  draw node %u %*[^,], mesh %u", &node, &mesh) == 2) {
-        assert_true(node < 1 + CLUSTERS * (1 + LEAVES));
-        assert_true(mesh < FIXTURE_MESHES && t->uploaded[mesh]);
-        t->draws++;
-        t->leaves += node > CLUSTERS;
+        assert_true(node <= SKY && mesh < FIXTURE_MESHES && t->uploaded[mesh]);
+        t->skies += node == SKY;
+        t->draws += node < SKY;
+        t->leaves += node > CLUSTERS && node < SKY;
     }
 }
 
@@ -86,6 +87,7 @@ static told run_example(const char *arguments)
         read_line(&t, line);
     assert_int_equal(t.frames, FRAMES);
     assert_int_equal(t.draws, t.entries);
+    assert_int_equal(t.skies, FRAMES);
     assert_true(t.draws >= FRAMES);
     return t;
 }
