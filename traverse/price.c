@@ -84,11 +84,10 @@ static double crossing(const prom_bracket *b)
     return fmax((b->over.benefit - b->within.benefit) / (b->over.cost - b->within.cost), 0.0);
 }
 
-prom_bracket prom_prices_search(prom_prices *prices, double budget, double price,
-                                unsigned looks)
+prom_bracket prom_prices_search(prom_prices *prices, prom_point cheapest, double budget,
+                                double price, unsigned looks)
 {
-    const prom_eval_node *root = &prices->eval->nodes[0];
-    prom_bracket b = {.within = {root->cmin, root->cmin_benefit}, .least = INFINITY};
+    prom_bracket b = {.within = cheapest, .least = INFINITY};
     double p = fmax(price, 0.0), step = FIRST_STEP;
     for (unsigned i = 0; i < looks; i++) {
         bool crosses = b.has_over && (b.has_price || !(price > 0.0));

@@ -55,9 +55,9 @@ typedef struct prom_bracket {
                       // budget has more
 } prom_bracket;
 
-// budget: of the tree, without the fixed part; not below cmin. price: to begin with; 0: not
-// known. Ends early once the bracket cannot be closer.
-prom_bracket prom_prices_search(prom_prices *prices, double budget, double price,
-                                unsigned looks);
+// cheapest: of the cuts, within the budget. budget: of the tree, without the fixed part. price:
+// to begin with; 0: not known. Ends early once the bracket cannot be closer.
+prom_bracket prom_prices_search(prom_prices *prices, prom_point cheapest, double budget,
+                                double price, unsigned looks);
 
 #endif

@@ -108,7 +108,9 @@ static double change_cut(incremental_state *s, double budget)
     if (s->last.number)
         prom_prices_look(&s->prices, s->price);
     else
-        s->price = prom_prices_search(&s->prices, budget, s->price, LOOKS).high;
+        s->price = prom_prices_search(&s->prices, (prom_point){root->cmin, root->cmin_benefit},
+                                      budget, s->price, LOOKS)
+                       .high;
     prom_moves_start(&s->moves, &s->prices, choose, s);
     prom_moves_coarsen(&s->moves, budget);
     // Coarsening one by one may end beside the cheapest cut.

@@ -62,7 +62,9 @@ static uint32_t cheapest_choice(void *user, uint32_t node)
 static double find_cut(lagrange_state *l, double budget)
 {
     prom_prices_gather(&l->prices, &l->eval, PROM_PRICE_VALUES);
-    prom_bracket b = prom_prices_search(&l->prices, budget, l->price, LOOKS);
+    const prom_eval_node *root = &l->eval.nodes[0];
+    prom_bracket b = prom_prices_search(
+        &l->prices, (prom_point){root->cmin, root->cmin_benefit}, budget, l->price, LOOKS);
     // Opened nodes are opened as at the price just too low; what is drawn is as at the other.
     if (b.has_price) {
         prom_prices_look(&l->prices, b.high);
@@ -72,7 +74,7 @@ static double find_cut(lagrange_state *l, double budget)
         prom_moves_start(&l->moves, &l->prices, cheapest_choice, l);
         l->price = b.has_over ? b.low : 0.0;
     }
-    return prom_moves_refine(&l->moves, budget, l->eval.nodes[0].cmin_benefit);
+    return prom_moves_refine(&l->moves, budget, root->cmin_benefit);
 }
 
 static void select_lagrange(void *pointer, const prom_selection *selection, prom_cut *cut)

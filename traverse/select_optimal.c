@@ -2,7 +2,8 @@
 // holds all its cuts that no other one beats in both cost and benefit; a node's is that of its
 // own options and of the sums of its children's.
 //
-// Exact while fronts have no more than FRONT_MAX cuts, as with a few dozen leaves. A larger one
+// Exact while fronts have no more than FRONT_MAX cuts, as with a dozen or two leaves; in larger
+// trees fronts share POINTS among all nodes, but FRONT_MIN each. A front that has more
 // is thinned: of cuts whose costs are in one step of the budget the one with the most benefit
 // stays, so that the result is still a cut within the budget, but no longer proven optimal;
 // then cut->bound is the usual one instead of the benefit itself. Takes memory as it needs it.
@@ -12,7 +13,7 @@
 
 #include <math.h>
 
-enum { FRONT_MAX = 4096 };
+enum { FRONT_MAX = 4096, FRONT_MIN = 256, POINTS = 1 << 17 };
 
 // A cut of a subtree, or of the first few children of a node.
 typedef struct pareto {
@@ -34,6 +35,7 @@ typedef struct optimal_state {
     point_array points;               // of all fronts
     point_array front, fresh, merged; // scratch
     double budget;                    // of the tree
+    size_t most;                      // points of a front
     bool exact;
     uint32_t *stack, *chosen; // nodes to be emitted, and which of their cuts
 } optimal_state;
@@ -93,8 +95,8 @@ static void merge_fresh(optimal_state *o)
 static void thin_front(optimal_state *o)
 {
     point_array *f = &o->front;
-    if (f->count <= FRONT_MAX) return;
-    double step = o->budget / FRONT_MAX;
+    if (f->count <= o->most) return;
+    double step = o->budget / (double)o->most;
     size_t kept = 0;
     o->exact = false;
     for (size_t i = 0; i < f->count; i++) {
@@ -207,6 +209,9 @@ static void select_optimal(void *pointer, const prom_selection *selection, prom_
     prom_eval_begin_cut(eval, cut);
     o->budget = selection->budget_ms * (1.0 - 1e-9) - eval->fixed_ms;
     o->exact = true;
+    o->most = POINTS / (size_t)(eval->visited_count + 1);
+    if (o->most > FRONT_MAX) o->most = FRONT_MAX;
+    if (o->most < FRONT_MIN) o->most = FRONT_MIN;
     o->points.count = 0;
     if (eval->nodes[0].culled || !(eval->nodes[0].cmin <= o->budget)) {
         prom_eval_emit_cmin(eval, cut);
