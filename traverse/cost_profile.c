@@ -255,15 +255,15 @@ prom_status prom_cost_load(const char *path, prom_cost_model *model, prom_error 
     prom_free(text);
     if (!root)
         return prom_fail(error, PROM_ERR_INPUT,
-                         "%s:%d: not a cost profile: %s; delete it and calibrate again", path,
-                         where.line, where.text);
+                         "%s:%d: not a cost profile: %s; `promenade calibrate -o` writes one",
+                         path, where.line, where.text);
     prom_cost_model loaded = {0};
     const char *fault = from_json(root, &loaded);
     json_decref(root);
     if (fault)
         return prom_fail(error, PROM_ERR_INPUT,
-                         "%s: not a valid cost profile: %s is missing or out of range; delete "
-                         "it and calibrate again",
+                         "%s: not a valid cost profile: %s is missing or out of range; "
+                         "calibrate again",
                          path, fault);
     *model = loaded;
     return PROM_OK;

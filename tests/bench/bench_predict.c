@@ -169,7 +169,8 @@ static void print_score(const char *name, bool is_true, const frame *frames, siz
 static double pixel_ms(const prom_cost_model *cost, const prom_cost_features *f)
 {
     prom_cost_features pixels = *f;
-    pixels.fixed = pixels.draws = pixels.vertices = pixels.triangles = 0;
+    pixels.fixed = pixels.binds = pixels.draws = 0;
+    pixels.vertices = pixels.triangles = 0;
     return prom_cost_predict(cost, &pixels);
 }
 

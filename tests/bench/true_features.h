@@ -158,6 +158,7 @@ static inline void count_features(true_features *t, const prom_camera *camera,
     count_pixels(t, &pass, f);
     f->fixed = 1;
     f->draws = (double)stats.draws;
+    f->binds = (double)stats.calls;
     f->vertices = (double)stats.vertices;
     f->triangles = (double)stats.triangles;
 }
