@@ -19,7 +19,8 @@ typedef struct sim_case {
     double rare_stall_ms; // every 150 frames
     double
         wander; // prediction is off by this (standard deviation), for some 20 frames each time
-    double drift;       // the pace goes up and down by this, once in 300 frames
+    double gusts; // the pace while others use the machine, now and then for some ten frames
+    double drift; // the pace goes up and down by this, once in 300 frames
     double wrong_terms; // pixels cost this times what was calibrated, geometry as little less
     double load;        // the pace in the middle half of the run
     double load_noise;  // and its noise
@@ -104,6 +105,13 @@ static double sim_stall(const sim_case *c, int *next, uint64_t *seed)
     return c->stall_ms;
 }
 
+static double sim_gust(const sim_case *c, bool *blows, uint64_t *seed)
+{
+    if (c->gusts <= 0) return 1;
+    if (sim_uniform(seed) < 0.1) *blows = !*blows;
+    return *blows ? c->gusts : 1;
+}
+
 // The cut: predicted at nearly what is allowed, unless full detail is less or nothing as cheap
 // can be had.
 static double sim_select(const sim_case *c, const prom_guarantee *g, int i, sim_frame *frame,
@@ -144,13 +152,14 @@ static void sim_walk(const sim_case *c, uint64_t seed, sim_run *run)
     prom_guarantee *g = &run->guarantee;
     prom_guarantee_init(g, &model, &options);
     int next = 11;
+    bool gust = false;
     double off = 0; // ln of what the prediction is off by, apart from all else
     for (int i = 0; i < SIM_FRAMES; i++) {
         sim_frame *out = &run->frames[i];
         prom_guarantee_frame frame = {.terms_ms = {sim_select(c, g, i, out, &seed)}};
         sim_draw(c, g, i, sim_stall(c, &next, &seed), &seed, &frame);
         off = 0.95 * off + sqrt(1 - 0.95 * 0.95) * c->wander * sim_gauss(&seed);
-        frame.draw_ms *= exp(off);
+        frame.draw_ms *= exp(off) * sim_gust(c, &gust, &seed);
         out->ms = frame.draw_ms + frame.other_ms;
         out->miss = out->contested && out->ms > SIM_BUDGET_MS;
         out->margin = g->margin, out->scale = g->scale;
@@ -205,10 +214,12 @@ static double sim_fixed(const sim_case *c, double noise)
     enum { N = 20000 };
     static double ms[N];
     uint64_t seed = 7;
+    bool gust = false;
     double sum = 0, rate = c->miss_rate > 0 ? c->miss_rate : PROM_MISS_RATE;
     for (int i = 0, next = 11; i < N; i++) {
         double stall = sim_stall(c, &next, &seed);
         ms[i] = 0.8 * SIM_BUDGET_MS * sim_noise(noise, &seed) + stall + sim_noise(1.5, &seed);
+        ms[i] *= sim_gust(c, &gust, &seed);
         if (i % 150 == 75) ms[i] += c->rare_stall_ms;
         sum += ms[i];
     }

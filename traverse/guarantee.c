@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SCALE_MIN 0.25
-#define SCALE_MAX 4.0
+#define SCALE_MIN 0.1
+#define SCALE_MAX 10.0
 #define MARGIN_MAX 0.75
 
 // Frames predicted at less of what is allowed say nothing about the margin (DESIGN 6).
@@ -169,9 +169,9 @@ static void set_margin(prom_guarantee *g)
 // A score is noise only if the next frame does not show that the pace changed: that is the
 // scale's to answer. One far beyond the margin counts as one a bit beyond, lest a single stall
 // sets the margin while few scores are known.
-static void note_score(prom_guarantee *g, double log_score, bool changes)
+static void note_score(prom_guarantee *g, double log_score, bool noise)
 {
-    if (changes) {
+    if (!noise) {
         g->pending = NAN;
         return;
     }
@@ -180,12 +180,13 @@ static void note_score(prom_guarantee *g, double log_score, bool changes)
     g->pending = fmin(log_score, most);
 }
 
+// Where the pace changes so often that its misses are no longer counted, changes are noise too.
 static void score(prom_guarantee *g, double log_score, bool changes)
 {
     double miss = log_score > -log1p(-g->margin) ? 1.0 : 0.0;
     double excess = g->excess + miss - g->options.miss_rate;
     g->excess = fmin(fmax(excess, 0.0), EXCESS_MAX);
-    note_score(g, log_score, changes);
+    note_score(g, log_score, !changes || excess >= EXCESS_MAX);
 }
 
 // ---- the interface

@@ -19,6 +19,8 @@ static const sim_case cases[] = {
     {.name = "rare stalls", .noise = 1.17, .rare_stall_ms = 30},
     {.name = "wander 5 %", .noise = 1.17, .wander = 0.05},
     {.name = "wander 10 %", .noise = 1.17, .wander = 0.1},
+    {.name = "gusts", .noise = 1.17, .gusts = 1.5},
+    {.name = "hard gusts", .noise = 1.3, .gusts = 3},
     {.name = "drift", .noise = 1.17, .drift = 0.3},
     {.name = "terms", .noise = 1.17, .wrong_terms = 1.5},
     {.name = "load", .noise = 1.17, .load = 2},
