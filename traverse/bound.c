@@ -4,11 +4,14 @@
 
 #include <math.h>
 
-// Looks for the bound of a finished cut. More than this gain nothing (measured).
+// Looks for the bound of a finished cut, from a price near the right one and from nothing. More
+// than these gain nothing (measured).
 #define LOOKS 4
+#define FIRST_LOOKS 16
 
 // Where the gap is larger than this, the bound is tightened: by so many branches at most.
 #define WIDE_GAP 0.03
+#define SPLIT_GAIN 0.1 // of the gap, that the first split has to close
 enum { BRANCHES = 8 };
 
 // Some ways of drawing a visited node: its own that cost no more than `cost`, and being opened
@@ -144,13 +147,17 @@ static void bound_branch(prom_bound *bound, const prom_eval *eval, double price,
                    b);
 }
 
-static double tighten(prom_bound *bound, const prom_eval *eval, double price)
+// least: what a cut within the budget has.
+static double tighten(prom_bound *bound, const prom_eval *eval, double price, double least)
 {
     branch *b = bound->branches;
     uint32_t count = 1, worst = 0;
     b[0].depth = 0;
     bound_branch(bound, eval, price, &b[0]);
+    double first = b[0].bound;
     while (b[worst].splits && count < BRANCHES) {
+        // Where the first split does not help, it is not for one large step that it is wide.
+        if (count == 2 && first - b[worst].bound < SPLIT_GAIN * (first - least)) break;
         b[count] = b[worst];
         b[worst].only[b[worst].depth++] = b[worst].split;
         b[count].only[b[count].depth] = b[count].split;
@@ -166,10 +173,10 @@ static double tighten(prom_bound *bound, const prom_eval *eval, double price)
 void prom_bound_certify(prom_bound *bound, const prom_eval *eval, double price, prom_cut *cut)
 {
     if (!eval->selection->certify) return;
-    cut->bound = prom_bound_find(bound, eval, price, LOOKS);
+    cut->bound = prom_bound_find(bound, eval, price, price > 0.0 ? LOOKS : FIRST_LOOKS);
     if (!cut->feasible) return;
     if (price > 0.0 && prom_cut_gap(cut) > WIDE_GAP)
-        cut->bound = fmin(cut->bound, tighten(bound, eval, price));
+        cut->bound = fmin(cut->bound, tighten(bound, eval, price, cut->benefit));
     cut->bound = fmax(cut->bound, cut->benefit); // but for rounding
 }
 

@@ -20,7 +20,8 @@ void prom_bound_destroy(prom_bound *bound); // NULL is allowed
 // At most what the visible pixels are worth; cmin's benefit where cmin is over the budget.
 double prom_bound_find(prom_bound *bound, const prom_eval *eval, double price, unsigned looks);
 
-// Fills cut->bound, where the selection asks for it.
+// Fills cut->bound of a finished cut, where the selection asks for it. Where the gap is above
+// 3 % and a price is known, the bound is tightened by branching (bound.c).
 void prom_bound_certify(prom_bound *bound, const prom_eval *eval, double price, prom_cut *cut);
 
 // Normalised gap of a cut with a bound (DESIGN 7): (bound - B) / (bound - B(cheapest cut)), in

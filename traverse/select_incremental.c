@@ -16,6 +16,7 @@
 
 // Looks for a price when nothing is known.
 #define LOOKS 16
+#define BOUND_LOOKS 4
 
 typedef struct incremental_state {
     prom_eval eval;
@@ -137,6 +138,14 @@ static double select_among(incremental_state *s, const prom_selection *selection
     return fits ? change_cut(s, budget) : -1.0;
 }
 
+// Without branches: where this bound is wide it is for what was not opened.
+static void certify(incremental_state *s, double price, prom_cut *cut)
+{
+    if (!s->eval.selection->certify) return;
+    cut->bound = prom_bound_find(s->bound, &s->eval, price, BOUND_LOOKS);
+    if (cut->feasible) cut->bound = fmax(cut->bound, cut->benefit); // but for rounding
+}
+
 static void select_incremental(void *pointer, const prom_selection *selection, prom_cut *cut)
 {
     incremental_state *s = pointer;
@@ -154,7 +163,7 @@ static void select_incremental(void *pointer, const prom_selection *selection, p
         prom_eval_emit_cmin(eval, cut);
     prom_eval_end_cut(eval, cut);
     cut->limited = refused > 0.0 || !cut->feasible;
-    prom_bound_certify(s->bound, eval, refused, cut);
+    certify(s, refused, cut);
     prom_steady_keep(&s->steady, eval, cut);
     prom_last_cut_note(&s->last, cut);
 }

@@ -10,6 +10,7 @@
 // that of its children's initial ones: the time is set aside before anything else is bought,
 // and only the initial cut itself can be over the budget. It is not the cheapest cut: meta can
 // be over a budget that cut->cmin_ms, the cheapest cut's time, would keep.
+#include "traverse/bound.h"
 #include "traverse/evaluate.h"
 #include "traverse/heap.h"
 #include "traverse/selectors.h"
@@ -26,6 +27,8 @@ typedef struct meta_state {
     prom_eval eval;
     meta_node *nodes;
     prom_heap list;
+    prom_bound *bound;
+    bool limited; // something did not fit
 } meta_state;
 
 static void *create(const prom_model *model)
@@ -35,6 +38,7 @@ static void *create(const prom_model *model)
     state->eval.any_mesh_hides = state->eval.heeds_priors = true;
     state->nodes = prom_alloc(model->tree_count, sizeof *state->nodes);
     state->list.entries = prom_alloc(model->tree_count, sizeof *state->list.entries);
+    state->bound = prom_bound_create(model);
     return state;
 }
 
@@ -45,6 +49,7 @@ static void destroy(void *pointer)
     prom_eval_finish(&state->eval);
     prom_free(state->nodes);
     prom_free(state->list.entries);
+    prom_bound_destroy(state->bound);
     prom_free(state);
 }
 
@@ -151,10 +156,12 @@ static void phase_2(meta_state *state, prom_cut *cut)
                 total += change;
                 push_children(state, node);
             } else {
+                state->limited = true;
                 prom_eval_emit(eval, node, n->option, cut);
             }
         } else if (n->option != PROM_NONE) {
             uint32_t option = improved(eval, e, n->option, budget - total);
+            if (option != improved(eval, e, n->option, INFINITY)) state->limited = true;
             total += eval->options[option].cost - n->cost;
             prom_eval_emit(eval, node, option, cut);
         }
@@ -166,11 +173,14 @@ static void select_meta(void *pointer, const prom_selection *selection, prom_cut
     meta_state *state = pointer;
     prom_eval_run(&state->eval, selection, NULL, NULL);
     prom_eval_begin_cut(&state->eval, cut);
+    state->limited = false;
     if (!state->eval.nodes[0].culled) {
         phase_1(state);
         phase_2(state, cut);
     }
     prom_eval_end_cut(&state->eval, cut);
+    cut->limited = state->limited || !cut->feasible;
+    prom_bound_certify(state->bound, &state->eval, 0.0, cut);
 }
 
 const prom_selector_class prom_select_meta = {
