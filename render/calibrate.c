@@ -160,12 +160,12 @@ static void take_sample(const calibration *c, size_t i)
     bool planned = plan_of(c, i, &plan);
     prom_cost_features *features = &c->samples[i].features;
     sample_times *t = &c->times[i];
-    if (features->fixed == 0) {
+    bool counted = features->fixed > 0;
+    if (!counted) {
         *features = planned ? count_features(c, &plan) : (prom_cost_features){.fixed = 1};
         *t = (sample_times){INFINITY, INFINITY, INFINITY};
-    } else {
-        draw(c, planned ? &plan : NULL); // to warm, as counting does
     }
+    if (counted || !planned) draw(c, planned ? &plan : NULL); // to warm, as counting does
     double busy_ms, ms = time_frame(c, planned ? &plan : NULL, &busy_ms);
     t->second_ms = fmin(t->second_ms, fmax(ms, t->ms));
     t->ms = fmin(t->ms, ms);
@@ -207,15 +207,14 @@ static void take_again(const calibration *c)
             if (!times_agree(&c->times[i]) && !is_late(c)) take_sample(c, i);
 }
 
-// Time over processor time of samples that are hardly disturbed: the lowest decile. 0 where
-// the device has no processor time.
+// The median of time over processor time; 0 where the device has none. On a busy machine the
+// level of all costs is that of the busy machine, as it is for the frames that follow.
 static double usual_ratio(const calibration *c)
 {
     double *ratios = prom_alloc(c->count, sizeof *ratios);
     for (size_t i = 0; i < c->count; i++)
         ratios[i] = c->times[i].busy_ms > 0 ? c->times[i].ms / c->times[i].busy_ms : 0;
-    qsort(ratios, c->count, sizeof *ratios, compare_doubles);
-    double ratio = ratios[c->count / 10];
+    double ratio = median(ratios, (int)c->count);
     prom_free(ratios);
     return ratio;
 }
