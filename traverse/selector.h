@@ -33,8 +33,9 @@ typedef struct prom_selection {
     prom_weighting weighting;
     prom_order order;
     unsigned priors; // prom_prior flags
-    // For `meta` and `greedy`: what a node was drawn by in the last cut counts this part of the
-    // node's pixels more when things are ordered; NULL or 0: it does not.
+    // For `meta`, `greedy`, `lagrange` and `incremental`: what a node was drawn by in the last
+    // cut counts this part of the node's pixels more when things are ordered; NULL or 0: it
+    // does not.
     const prom_last_cut *last;
     float hysteresis;
 } prom_selection;
