@@ -22,7 +22,7 @@ static void put_share(FILE *out, bool checked, double share)
 
 static void put_guarantee(FILE *out, double start_unix_s, const prom_frame_record *r)
 {
-    fprintf(out, ",%d", r->limited);
+    fprintf(out, ",%.2f,%d", r->resolution, r->limited);
     put_share(out, !isnan(r->gap), r->gap);
     fprintf(out, ",%.4f,%.4f,%.4f,%.4f,%016" PRIx64, r->allowed_ms, r->scale, r->margin,
             start_unix_s + r->start_ms / 1000, r->cut_hash);
@@ -56,8 +56,9 @@ prom_status prom_bench_write_csv(const char *path, const prom_loop_options *opti
     FILE *out = open_memstream(&text, &bytes);
     if (!out) return prom_fail(error, PROM_ERR_OUTPUT, "%s: %s", path, strerror(errno));
     fputs("frame,t_s,budget_ms,frame_ms,select_ms,predicted_ms,triangles,draws,cut_nodes,"
-          "switches,benefit_px,loss_px,feasible,contested,limited,gap,allowed_ms,scale,margin,"
-          "start_unix_s,cut_hash,holes,accuracy,predicted_accuracy,flip,loss,hidden_cost,"
+          "switches,benefit_px,loss_px,feasible,contested,resolution,limited,gap,allowed_ms,"
+          "scale,margin,start_unix_s,cut_hash,holes,accuracy,predicted_accuracy,flip,loss,"
+          "hidden_cost,"
           "hidden_nodes\n",
           out);
     for (size_t i = 0; i < result->frames.count; i++)

@@ -1,6 +1,7 @@
 // promenade shot: one picture of a model.
 #include "app/command.h"
 #include "app/output.h"
+#include "app/resolution.h"
 #include "app/sight.h"
 
 #include "metaobj/base/log.h"
@@ -99,50 +100,94 @@ static prom_status check_frame(const shot_options *o, const prom_path *path, pro
                      (unsigned long long)o->frame, path->keys.count);
 }
 
-static prom_status draw(const shot_options *o, prom_session *session, prom_error *error)
+static prom_camera camera_of(const shot_options *o, const prom_session *session)
 {
-    bool budgeted = o->view.budget_ms > 0;
-    prom_selector *selector = prom_selector_create(o->view.selector, &session->model, error);
-    if (!selector) return error->status;
-
     prom_camera camera = session->camera;
-    if (o->has_eye) {
-        for (int i = 0; i < 3; i++) camera.eye[i] = o->eye[i];
-        prom_camera_look_at(&camera, o->look_at);
-    } else {
+    if (!o->has_eye) {
         prom_path_pose(&session->path, o->frame, &camera);
+        return camera;
     }
-    const prom_selector_class *class = prom_selector_class_named(o->view.selector);
-    double allowed = budgeted ? prom_session_allowed_ms(session, o->view.budget_ms) : INFINITY;
+    for (int i = 0; i < 3; i++) camera.eye[i] = o->eye[i];
+    prom_camera_look_at(&camera, o->look_at);
+    return camera;
+}
+
+typedef struct shot {
+    prom_camera camera;
+    const prom_selector_class *class;
+    prom_selector *selector;
     prom_sight sight;
-    prom_cut cut = {0};
-    prom_status status = prom_sight_init(&sight, session, error);
-    // What hides what changes costs, and so only cuts that these matter to. Edges hide nothing:
-    // the frames before the picture are drawn plain.
+    prom_resolution resolution;
+    double allowed_ms;
+    prom_cut cut;
+} shot;
+
+static prom_status begin(shot *t, const shot_options *o, prom_session *session,
+                         prom_error *error)
+{
+    const char *name = o->view.selector;
+    bool budgeted = o->view.budget_ms > 0;
+    *t = (shot){.camera = camera_of(o, session), .class = prom_selector_class_named(name)};
+    t->allowed_ms = budgeted ? prom_session_allowed_ms(session, o->view.budget_ms) : INFINITY;
+    t->selector = prom_selector_create(name, &session->model, error);
+    if (!t->selector) return error->status;
+    prom_status status = prom_sight_init(&t->sight, session, error);
+    if (status) return status;
+    return prom_resolution_init(&t->resolution, session, name, &t->camera, error);
+}
+
+static void end(shot *t)
+{
+    prom_resolution_finish(&t->resolution);
+    prom_sight_finish(&t->sight);
+    prom_cut_finish(&t->cut);
+    prom_selector_destroy(t->selector);
+}
+
+// What hides what changes costs, and so only cuts that these matter to. Edges hide nothing: the
+// frames before the picture are drawn plain.
+static void take(shot *t, const shot_options *o, prom_session *session)
+{
     const prom_frame_options plain = {0};
-    int frames = !status && sight.counter && class->uses_cost ? SETTLE_FRAMES : 1;
-    for (int i = 0; !status && i < frames; i++) {
+    int frames = t->sight.counter && t->class->uses_cost ? SETTLE_FRAMES : 1;
+    prom_view view;
+    prom_view_init(&view, &t->camera);
+    for (int i = 1; i <= frames; i++) {
         prom_renderer_take_stats(session->renderer);
-        prom_sight_begin(&sight, &camera);
-        prom_session_select(session, selector, sight.visibility, &camera, allowed,
-                            o->view.rule_scale, &cut);
-        prom_sight_draw(&sight, &cut, &camera, i + 1 < frames ? &plain : &o->draw);
+        prom_sight_begin(&t->sight, &t->camera);
+        prom_selection selection = prom_session_selection(session, &view, t->sight.visibility,
+                                                          t->allowed_ms, o->view.rule_scale);
+        prom_resolution_select_best(&t->resolution, t->selector, &selection, &t->cut);
+        prom_resolution_draw(&t->resolution, &t->sight, &t->cut, &t->camera,
+                             i < frames ? &plain : &o->draw);
     }
-    prom_sight_finish(&sight);
-    prom_draw_stats stats = prom_renderer_take_stats(session->renderer);
-    if (class->budgeted && cut.cmin_ms > allowed)
+    if (t->class->budgeted && t->cut.cmin_ms > t->allowed_ms)
         prom_log(PROM_LOG_WARNING,
                  "budget %g ms: even the cheapest cut is predicted at %.1f ms of drawing",
-                 o->view.budget_ms, cut.cmin_ms);
-    if (!status) status = prom_session_write_png(session, o->output, error);
+                 o->view.budget_ms, t->cut.cmin_ms);
+}
+
+static void tell(const shot *t, const shot_options *o, prom_session *session)
+{
+    prom_draw_stats stats = prom_renderer_take_stats(session->renderer);
+    double scale = prom_resolution_scale(&t->resolution);
+    printf("%s: %s, %llu triangles in %zu nodes", o->output, o->view.selector,
+           (unsigned long long)stats.triangles, t->cut.entries.count);
+    if (session->cost.sample_count) printf(", predicted %.1f ms", t->cut.predicted_ms);
+    if (scale < 1) printf(", drawn at %.2f of its size", scale);
+    putchar('\n');
+}
+
+static prom_status draw(const shot_options *o, prom_session *session, prom_error *error)
+{
+    shot t;
+    prom_status status = begin(&t, o, session, error);
     if (!status) {
-        printf("%s: %s, %llu triangles in %zu nodes", o->output, o->view.selector,
-               (unsigned long long)stats.triangles, cut.entries.count);
-        if (session->cost.sample_count) printf(", predicted %.1f ms", cut.predicted_ms);
-        putchar('\n');
+        take(&t, o, session);
+        status = prom_session_write_png(session, o->output, error);
     }
-    prom_cut_finish(&cut);
-    prom_selector_destroy(selector);
+    if (!status) tell(&t, o, session);
+    end(&t);
     return status;
 }
 

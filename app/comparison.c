@@ -133,7 +133,8 @@ prom_difference prom_comparison_run(prom_comparison *comparison, prom_session *s
     bool quality = wanted & PROM_COMPARE_QUALITY;
     prom_difference difference = {.found = wanted};
     prom_session_select(session, c->full, NULL, camera, INFINITY, 1, &c->cut);
-    look(c, session, camera, cut, quality, &c->shown);
+    if (quality) look(c, session, camera, cut, true, &c->shown); // for the pixels of its nodes
+    prom_target_read_rgba(session->target, 0, 0, camera->width, camera->height, c->shown.rgba);
     look(c, session, camera, &c->cut, quality, &c->truth);
     if (wanted & PROM_COMPARE_HOLES)
         difference.holes =

@@ -48,7 +48,8 @@ typedef struct prom_comparison {
 prom_status prom_comparison_init(prom_comparison *comparison, const prom_session *session,
                                  unsigned wanted, double ppd, prom_error *error);
 void prom_comparison_finish(prom_comparison *comparison); // {0} is allowed
-// Draws the cut and full detail from this camera into a target of its own, and compares.
+// Compares the cut's picture, which the session's target shows, with full detail from this
+// camera, drawn into a target of its own.
 prom_difference prom_comparison_run(prom_comparison *comparison, prom_session *session,
                                     const prom_camera *camera, const prom_cut *cut,
                                     unsigned wanted);

@@ -131,13 +131,13 @@ static prom_status between_frames(loop *l, uint32_t i, prom_frame_record *record
     if (!keep && !wanted) return PROM_OK;
     prom_camera camera = l->step.session->camera;
     prom_path_pose(&l->step.session->path, i, &camera);
+    if (wanted)
+        record->difference =
+            prom_comparison_run(&l->comparison, l->step.session, &camera, &l->step.cut, wanted);
     if (keep) {
         prom_status status = keep_pictures(l, i, &camera, error);
         if (status) return status;
     }
-    if (wanted)
-        record->difference =
-            prom_comparison_run(&l->comparison, l->step.session, &camera, &l->step.cut, wanted);
     prom_session_draw(l->step.session, &l->step.cut, &camera, &(prom_frame_options){0});
     prom_renderer_take_stats(l->step.session->renderer);
     return PROM_OK;

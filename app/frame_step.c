@@ -18,6 +18,8 @@ prom_status prom_frame_step_init(prom_frame_step *step, prom_session *session,
     step->selector = prom_selector_create(selector, &session->model, error);
     prom_status status = step->selector ? PROM_OK : error->status;
     if (!status) status = prom_sight_init(&step->sight, session, error);
+    if (!status)
+        status = prom_resolution_init(&step->resolution, session, selector, NULL, error);
     if (status) prom_frame_step_finish(step);
     return status;
 }
@@ -27,6 +29,7 @@ void prom_frame_step_finish(prom_frame_step *step)
     prom_cut_finish(&step->cut);
     prom_selector_destroy(step->selector);
     prom_sight_finish(&step->sight);
+    prom_resolution_finish(&step->resolution);
     prom_last_cut_finish(&step->last);
 }
 
@@ -53,7 +56,7 @@ static prom_switches choose(prom_frame_step *step, const prom_camera *camera, do
         selection.max_switches = 0;
     }
     selection.weighting.dt_s = step->dt_s;
-    prom_selector_run(step->selector, &selection, &step->cut);
+    prom_resolution_select(&step->resolution, step->selector, &selection, &step->cut);
     return prom_last_cut_note(&step->last, &step->cut);
 }
 
@@ -92,7 +95,7 @@ prom_frame_record prom_frame_step_draw(prom_frame_step *step, const prom_camera 
     prom_sight_begin(&step->sight, camera);
     prom_switches switches = choose(step, camera, allowed);
     double selected = prom_clock_ms();
-    prom_sight_draw(&step->sight, &step->cut, camera, &plain);
+    prom_resolution_draw(&step->resolution, &step->sight, &step->cut, camera, &plain);
     double end = prom_clock_ms();
 
     prom_draw_stats stats = prom_renderer_take_stats(s->renderer);
@@ -105,6 +108,7 @@ prom_frame_record prom_frame_step_draw(prom_frame_step *step, const prom_camera 
         .allowed_ms = allowed,
         .scale = guarantee->scale,
         .margin = guarantee->margin,
+        .resolution = prom_resolution_scale(&step->resolution),
         .triangles = (double)stats.triangles,
         .draws = (double)stats.draws,
         .switches = switches,

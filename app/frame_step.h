@@ -8,6 +8,7 @@
 #define PROM_APP_FRAME_STEP_H
 
 #include "app/comparison.h"
+#include "app/resolution.h"
 #include "app/sight.h"
 #include "traverse/guarantee.h"
 
@@ -19,6 +20,7 @@ typedef struct prom_frame_record {
     double predicted_ms;  // of draw_ms, as corrected before the frame
     double allowed_ms;    // what the cut might be predicted at, before that correction
     double scale, margin; // of the guarantee, at the frame's start
+    double resolution;    // the scale that it was drawn at, see prom_resolution_scale
     double triangles, draws;
     double benefit_px, loss_px;
     double gap; // see prom_cut_gap; NAN: not known
@@ -38,6 +40,7 @@ typedef struct prom_frame_step {
     prom_selector *selector;
     prom_guarantee guarantee;
     prom_sight sight;
+    prom_resolution resolution;
     prom_cut cut;   // the last frame's
     prom_view view; // and its
     prom_last_cut last;

@@ -120,6 +120,7 @@ const struct argp prom_argp_log = {.options = log_options, .parser = parse_log};
 const prom_view_options prom_view_options_default = {
     .rule_scale = 1,
     .miss_rate = PROM_MISS_RATE,
+    .min_scale = 1,
     .fov_degrees = 60,
     .visibility = PROM_SEE_BOTH,
     .size_px = {1280, 720},
@@ -140,6 +141,7 @@ enum {
     KEY_PATH = 0x2000,
     KEY_BUDGET,
     KEY_MISS_RATE,
+    KEY_MIN_SCALE,
     KEY_SELECTOR,
     KEY_RESOLUTION,
     KEY_PROFILE,
@@ -158,6 +160,11 @@ static const struct argp_option view_options[] = {
     {"selector", KEY_SELECTOR, "NAME", 0,
      "What chooses the representations: meta, greedy, distance, full or coarsest", 0},
     {"resolution", KEY_RESOLUTION, "W,H", 0, "Size of the picture in pixels (1280,720)", 0},
+    {"min-scale", KEY_MIN_SCALE, "FACTOR", 0,
+     "With a budget: the picture may be drawn smaller and scaled up, by this factor on its "
+     "sides "
+     "at most, where that loses less than it buys; 0.5 allows all steps there are, 1 none (1)",
+     0},
     {"fov-deg", KEY_FOV, "DEGREES", 0, "Vertical field of view (60)", 0},
     {"rule-scale", KEY_RULE_SCALE, "FACTOR", 0,
      "For selectors that follow a rule of their own (`distance`, its ranges): factor on it, "
@@ -222,6 +229,9 @@ static error_t parse_view(int key, char *text, struct argp_state *state)
         break;
     case KEY_MISS_RATE:
         o->miss_rate = prom_option_number(state, "--miss-rate", text, 1e-3, 0.5);
+        break;
+    case KEY_MIN_SCALE:
+        o->min_scale = prom_option_number(state, "--min-scale", text, 1e-3, 1);
         break;
     case KEY_SELECTOR:
         o->selector = known_selector(state, text);

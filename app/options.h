@@ -53,6 +53,7 @@ typedef struct prom_view_options {
     double budget_ms;     // 0: not given
     double rule_scale;
     double miss_rate;   // accepted share of frames over the budget
+    double min_scale;   // the picture may be drawn so small, by its sides; 1: it may not
     double fov_degrees; // vertical
     prom_visibility_mode visibility;
     uint32_t size_px[2];

@@ -96,6 +96,7 @@ static prom_status open_all(prom_session *s, const prom_session_device *device,
     s->ppd = options->ppd;
     s->choice = options->choice;
     s->miss_rate = options->miss_rate;
+    s->min_scale = options->min_scale;
     s->frozen = options->profile;
     double start = prom_clock_ms();
     // What does not choose by cost and benefit has no use for it.

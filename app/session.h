@@ -24,6 +24,7 @@ typedef struct prom_session {
     prom_target *target;
     prom_choice_options choice;
     double miss_rate;     // accepted share of frames over the budget
+    double min_scale;     // see prom_view_options
     bool frozen;          // a profile was given: nothing that is measured changes what is drawn
     float *semantics;     // weights of the tree's nodes; NULL: all 1
     prom_cost_model cost; // {0} when nothing is known and neither budget nor selector needs it

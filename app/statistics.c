@@ -160,6 +160,7 @@ prom_run_statistics prom_run_statistics_of(const prom_frame_record *records, siz
     prom_free(values);
     for (size_t i = 0; i < count; i++) {
         s.triangles += records[i].triangles / (double)count;
+        s.resolution += records[i].resolution / (double)count;
         s.draws += records[i].draws / (double)count;
         s.cut_nodes += records[i].cut_nodes / (double)count;
         s.benefit_px += records[i].benefit_px / (double)count;
