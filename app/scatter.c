@@ -113,7 +113,7 @@ static void put_axes(const canvas *c, const prom_scatter *plot)
 {
     static const double steps[3] = {1, 2, 5};
     char attributes[128];
-    bool fine = c->high < asinh(pow(10.0, FINE_DECADES));
+    bool fine = c->high - c->low < asinh(pow(10.0, FINE_DECADES));
     put_tick(c, 0);
     for (double value = c->linear; scaled(c, value) < fmax(c->high, -c->low); value *= 10)
         for (int i = 0; i < (fine ? 3 : 1); i++) {
