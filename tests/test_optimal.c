@@ -58,20 +58,22 @@ static void run(const prom_selector_class *class, void *state, const small_tree 
     if (fault) fail_msg("%s: %s", class->name, fault);
 }
 
+static double ms_of(const prom_selector_class *class, small_tree *t)
+{
+    prom_cut cut = {0};
+    void *state = class->create(&t->model);
+    run(class, state, t, &cut);
+    double ms = cut.predicted_ms;
+    class->destroy(state);
+    prom_cut_finish(&cut);
+    return ms;
+}
+
 // A budget between the cheapest cut and full detail.
 static void set_budget(small_tree *t, uint64_t *seed)
 {
-    static const prom_selector_class *const ends[] = {&prom_select_coarsest, &prom_select_full};
-    double ms[2];
-    prom_cut cut = {0};
-    for (int i = 0; i < 2; i++) {
-        void *state = ends[i]->create(&t->model);
-        run(ends[i], state, t, &cut);
-        ms[i] = cut.predicted_ms;
-        ends[i]->destroy(state);
-    }
-    prom_cut_finish(&cut);
-    t->selection.budget_ms = ms[0] + (ms[1] - ms[0]) * random_between(seed, 0.0f, 1.0f);
+    double low = ms_of(&prom_select_coarsest, t), high = ms_of(&prom_select_full, t);
+    t->selection.budget_ms = low + (high - low) * random_between(seed, 0.0f, 1.0f);
 }
 
 typedef struct tally {
@@ -165,6 +167,7 @@ static void large_trees_are_nearly_optimal(void **unused)
         prom_view_init(&t.view, &t.camera);
         t.selection = (prom_selection){.view = &t.view, .cost = &t.cost, .certify = true};
         set_budget(&t, &seed);
+        if (!tree) t.selection.budget_ms = ms_of(&prom_select_coarsest, &t) * (1.0 + 1e-8);
         void *states[] = {prom_select_optimal.create(&t.model),
                           prom_select_greedy.create(&t.model)};
         run(&prom_select_optimal, states[0], &t, &best);

@@ -77,7 +77,8 @@ static void counts_like_the_footprints_change_nothing(void **state)
         for (size_t i = 0; i < prom_selector_count(); i++) {
             const char *name = prom_selector_at(i)->name;
             b.selection.visibility = NULL;
-            prom_cut *cut = bench_run(&b, name, budget);
+            prom_cut *cut = NULL; // those that go on from their last cut come to rest
+            for (int frame = 0; frame < 12; frame++) cut = bench_run(&b, name, budget);
             size_t count = cut->entries.count;
             prom_cut_entry *plain = prom_alloc(count, sizeof *plain);
             if (count) memcpy(plain, cut->entries.data, count * sizeof *plain);

@@ -91,17 +91,18 @@ static void merge_fresh(optimal_state *o)
     o->merged = swap;
 }
 
-// Of the cuts whose costs are in one step of the budget, keeps the last: it shows most.
+// Of the cuts whose costs are in one step of the budget, keeps the last: it shows most; and the
+// cheapest of all, on which it may depend whether the whole can be paid.
 static void thin_front(optimal_state *o)
 {
     point_array *f = &o->front;
     if (f->count <= o->most) return;
     double step = o->budget / (double)o->most;
-    size_t kept = 0;
+    size_t kept = 1;
     o->exact = false;
-    for (size_t i = 0; i < f->count; i++) {
+    for (size_t i = 1; i < f->count; i++) {
         bool same =
-            kept && floor(f->data[i].cost / step) == floor(f->data[kept - 1].cost / step);
+            kept > 1 && floor(f->data[i].cost / step) == floor(f->data[kept - 1].cost / step);
         f->data[same ? kept - 1 : kept++] = f->data[i];
     }
     f->count = kept;
@@ -218,7 +219,10 @@ static void select_optimal(void *pointer, const prom_selection *selection, prom_
     } else {
         for (uint32_t i = eval->visited_count; i-- > 0;)
             if (!eval->nodes[eval->visited[i]].culled) find_front(o, eval->visited[i]);
-        emit_best(o, cut);
+        if (o->of[0].count)
+            emit_best(o, cut);
+        else // by rounding
+            prom_eval_emit_cmin(eval, cut);
     }
     prom_eval_end_cut(eval, cut);
     double most = 0.0;
