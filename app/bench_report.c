@@ -53,6 +53,16 @@ static json_t *quality_json(const prom_run_statistics *t, double ppd)
                      prom_json_number(t->hidden_nodes));
 }
 
+static json_t *popping_json(const prom_run_statistics *t)
+{
+    if (!t->popping_frames) return json_null(); // not asked for
+    const prom_popped *p = &t->popped;
+    return json_pack("{s:i, s:o, s:o, s:o, s:o}", "frames", (int)t->popping_frames, "flip",
+                     prom_json_number(p->flip), "floor", prom_json_number(p->floor), "popping",
+                     prom_json_number(p->flip - p->floor), "valid_share",
+                     prom_json_number(p->valid_share));
+}
+
 static void set(json_t *object, const char *key, json_t *value)
 {
     json_object_set_new(object, key, value);
@@ -96,6 +106,7 @@ static void set_found(json_t *run, const prom_run_facts *f, const prom_run_stati
     set(run, "holes", holes_json(t));
     set(run, "accuracy", accuracy_json(t));
     set(run, "quality", quality_json(t, prom_session_ppd(f->session)));
+    set(run, "popping", popping_json(t));
     set(run, "swap", f->swap ? prom_swap_json(f->swap) : json_null());
     set(run, "oracle", f->oracle ? prom_oracle_json(f->oracle) : json_null());
     set(run, "start_s", prom_json_number(f->session->start_s));
@@ -154,6 +165,11 @@ void prom_bench_print(const prom_run_facts *facts)
                "the nodes\n",
                100 * t.loss_share, 100 * t.hidden_cost, 100 * t.hidden_nodes);
     }
+    if (t.popping_frames)
+        printf("popping    FLIP %.4f, of full detail %.4f: %+.4f; %.1f %% of the pixels in %u "
+               "frames\n",
+               t.popped.flip, t.popped.floor, t.popped.flip - t.popped.floor,
+               100 * t.popped.valid_share, t.popping_frames);
     if (facts->swap) prom_swap_print(facts->swap);
     if (facts->oracle) prom_oracle_print(facts->oracle);
     printf("start      %.1f s, memory %.0f MiB, at the end %.0f\n", facts->session->start_s,

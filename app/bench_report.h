@@ -31,6 +31,8 @@ typedef struct prom_run_facts {
 //   holes: frames, mean, max, as a share of the covered pixels; null if not asked for
 //   accuracy: frames, mean, min of the pictures; predicted: the mean that the selector expected
 //     of the same frames; null if not asked for
+//   popping: frames, and means over them: flip, floor, popping (their difference), valid_share,
+//     see app/popping.h; null if not asked for
 //   swap: see app/swap_report.h; oracle: see app/oracle.h; null if not asked for
 //   start_s, calibration_s, memory_mb: start, end
 json_t *prom_bench_json(const prom_run_facts *facts);

@@ -33,6 +33,7 @@ enum {
     KEY_HOLES,
     KEY_ACCURACY,
     KEY_QUALITY,
+    KEY_POPPING,
     KEY_NOISE_FLOOR,
     KEY_SWAP_TEST,
     KEY_SWAPS,
@@ -64,6 +65,11 @@ static const struct argp_option options[] = {
      "On N frames also draw full detail and report how different the picture looks (mean "
      "FLIP), the share of visible pixels lost, and the shares of cost and nodes that show no "
      "pixel (20)",
+     1},
+    {"popping-frames", KEY_POPPING, "N", 0,
+     "On N frames report popping: how different the frame looks (mean FLIP) from the one "
+     "before "
+     "taken to where its points are now, beside the same of full detail (0)",
      1},
     {"noise-floor", KEY_NOISE_FLOOR, "N", 0,
      "Draw one cut that takes about the budget N times between the walk's frames, and report "
@@ -127,6 +133,10 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case KEY_QUALITY:
         o->loop.quality_frames =
             (uint32_t)prom_option_whole(state, "--quality-frames", text, 0, 100000);
+        break;
+    case KEY_POPPING:
+        o->loop.popping_frames =
+            (uint32_t)prom_option_whole(state, "--popping-frames", text, 0, 100000);
         break;
     case KEY_NOISE_FLOOR:
         o->loop.noise_floor =

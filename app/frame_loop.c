@@ -1,6 +1,7 @@
 #include "app/frame_loop.h"
 
 #include "app/comparison.h"
+#include "app/cut_change.h"
 #include "metaobj/base/clock.h"
 #include "metaobj/base/log.h"
 
@@ -17,6 +18,9 @@ typedef struct loop {
     prom_frame_step step;
     const prom_loop_options *options;
     prom_comparison comparison;
+    prom_popping popping;
+    prom_cut cut_before; // of the frame before, where popping is looked for
+    prom_camera camera_before;
     prom_loop_result *result;
     double jump; // a longer way from one frame to the next is one
 } loop;
@@ -120,6 +124,16 @@ static unsigned wanted_of(const prom_loop_options *o, uint32_t i)
     return wanted;
 }
 
+// Before frame i is drawn; the first of all has none before it.
+static void keep_before(loop *l, uint32_t i)
+{
+    l->camera_before.width = 0;
+    if (!spaced_at(i, l->options->popping_frames, l->options->frames)) return;
+    if (!l->step.last.number) return;
+    prom_cut_copy(&l->step.cut, &l->cut_before);
+    l->camera_before = l->step.view.camera;
+}
+
 // Pictures and comparisons after a frame. They disturb the caches, and `full` the device's
 // memory: the cut is drawn again, untimed and uncounted.
 static prom_status between_frames(loop *l, uint32_t i, prom_frame_record *record,
@@ -128,7 +142,8 @@ static prom_status between_frames(loop *l, uint32_t i, prom_frame_record *record
     const prom_loop_options *o = l->options;
     bool keep = o->keep_folder && i % o->keep_every == 0;
     unsigned wanted = wanted_of(o, i);
-    if (!keep && !wanted) return PROM_OK;
+    bool popping = l->camera_before.width;
+    if (!keep && !wanted && !popping) return PROM_OK;
     prom_camera camera = l->step.session->camera;
     prom_path_pose(&l->step.session->path, i, &camera);
     if (wanted)
@@ -138,6 +153,9 @@ static prom_status between_frames(loop *l, uint32_t i, prom_frame_record *record
         prom_status status = keep_pictures(l, i, &camera, error);
         if (status) return status;
     }
+    if (popping)
+        record->popped = prom_popping_look(&l->popping, l->step.session, &l->cut_before,
+                                           &l->camera_before, &l->step.cut, &camera);
     prom_session_draw(l->step.session, &l->step.cut, &camera, &(prom_frame_options){0});
     prom_renderer_take_stats(l->step.session->renderer);
     return PROM_OK;
@@ -172,6 +190,7 @@ static prom_status walk(loop *l, prom_error *error)
     prom_progress_begin(&progress, "frames", o->frames);
     prom_status status = PROM_OK;
     for (uint32_t i = 0; i < o->frames && !status; i++) {
+        keep_before(l, i);
         prom_frame_record record = draw_frame(l, i);
         if (!record.feasible) note_infeasible(l);
         prom_frame_step_feed(&l->step, &record);
@@ -189,9 +208,13 @@ static prom_status open_comparison(loop *l, prom_error *error)
 {
     unsigned wanted = 0;
     for (uint32_t i = 0; i < l->options->frames; i++) wanted |= wanted_of(l->options, i);
-    if (!wanted) return PROM_OK;
     prom_session *s = l->step.session;
-    return prom_comparison_init(&l->comparison, s, wanted, prom_session_ppd(s), error);
+    double ppd = prom_session_ppd(s);
+    prom_status status = PROM_OK;
+    if (wanted) status = prom_comparison_init(&l->comparison, s, wanted, ppd, error);
+    if (!status && l->options->popping_frames)
+        status = prom_popping_init(&l->popping, s, ppd, error);
+    return status;
 }
 
 static prom_status find_floor(prom_session *session, const prom_loop_options *o,
@@ -216,6 +239,8 @@ prom_status prom_frame_loop_run(prom_session *session, const prom_loop_options *
     status = open_comparison(&l, error);
     if (!status) status = walk(&l, error);
     prom_comparison_finish(&l.comparison);
+    prom_popping_finish(&l.popping);
+    prom_cut_finish(&l.cut_before);
     prom_frame_step_finish(&l.step);
     return status;
 }

@@ -18,7 +18,8 @@ typedef struct prom_loop_options {
     bool keep_colours; // and each of them again in false colours
     // Frames to compare with full detail, evenly spaced; 0: none.
     uint32_t check_holes, check_accuracy, quality_frames;
-    uint32_t noise_floor; // repeats of a fixed cut, evenly between the frames; 0: none
+    uint32_t popping_frames; // evenly spaced, compared with the frame before; 0: none
+    uint32_t noise_floor;    // repeats of a fixed cut, evenly between the frames; 0: none
 } prom_loop_options;
 
 typedef struct prom_loop_result {

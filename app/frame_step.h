@@ -8,6 +8,7 @@
 #define PROM_APP_FRAME_STEP_H
 
 #include "app/comparison.h"
+#include "app/popping.h"
 #include "app/resolution.h"
 #include "app/sight.h"
 #include "traverse/guarantee.h"
@@ -33,6 +34,7 @@ typedef struct prom_frame_record {
     bool turned;                // the camera jumped, or turned fast. The caller's
     bool aside;                 // not one of the run, see prom_guarantee_frame. The caller's
     prom_difference difference; // from full detail, where it was looked for
+    prom_popped popped;         // since the frame before; valid_share 0: not looked for
 } prom_frame_record;
 
 typedef struct prom_frame_step {

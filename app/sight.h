@@ -13,7 +13,7 @@
 typedef struct prom_sighting {
     uint64_t frame;
     prom_ids ids;
-    float scale; // pixels of the camera's picture for each one drawn
+    float scale;                           // pixels of the camera's picture for each one drawn
     PROM_ARRAY(prom_visible_count) counts; // its cut; px is filled in when they are known
 } prom_sighting;
 

@@ -132,6 +132,22 @@ static void add_accuracy(const prom_frame_record *records, size_t count, prom_ru
 }
 
 // values: room for one of each record.
+static void add_popping(const prom_frame_record *records, size_t count, prom_run_statistics *s)
+{
+    for (size_t i = 0; i < count; i++) {
+        const prom_popped *p = &records[i].popped;
+        if (!(p->valid_share > 0)) continue;
+        s->popping_frames++;
+        s->popped.flip += p->flip;
+        s->popped.floor += p->floor;
+        s->popped.valid_share += p->valid_share;
+    }
+    if (!s->popping_frames) return;
+    s->popped.flip /= s->popping_frames;
+    s->popped.floor /= s->popping_frames;
+    s->popped.valid_share /= s->popping_frames;
+}
+
 static void add_quality(const prom_frame_record *records, size_t count, double *values,
                         prom_run_statistics *s)
 {
@@ -157,6 +173,7 @@ prom_run_statistics prom_run_statistics_of(const prom_frame_record *records, siz
     for (size_t i = 0; i < count; i++) values[i] = records[i].select_ms;
     s.select_ms = prom_spread_of(values, count);
     add_quality(records, count, values, &s);
+    add_popping(records, count, &s);
     prom_free(values);
     for (size_t i = 0; i < count; i++) {
         s.triangles += records[i].triangles / (double)count;

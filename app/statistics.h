@@ -22,6 +22,8 @@ typedef struct prom_run_statistics {
     double predicted_accuracy; // mean of the same frames: benefit / (benefit + loss)
     prom_spread flip;          // of the frames' means
     double loss_share, hidden_cost, hidden_nodes; // means, see prom_difference
+    uint32_t popping_frames;                      // 0: not looked for
+    prom_popped popped;                           // means
 } prom_run_statistics;
 
 // values: count >= 1 of them; sorted on return.
