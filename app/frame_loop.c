@@ -163,6 +163,9 @@ static prom_status between_frames(loop *l, uint32_t i, prom_frame_record *record
 
 static void warm_up(loop *l)
 {
+    prom_camera camera = l->step.session->camera;
+    prom_path_pose(&l->step.session->path, l->options->warmup, &camera);
+    prom_frame_step_warm(&l->step, &camera);
     // Towards the start, so that the first recorded frame follows its neighbour.
     for (uint32_t i = l->options->warmup; i > 0; i--) {
         prom_frame_record record = draw_frame(l, i);

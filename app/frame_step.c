@@ -4,7 +4,12 @@
 #include "metaobj/base/hash.h"
 #include "traverse/bound.h"
 
+#include <math.h>
 #include <string.h>
+
+#define WARM_FRAMES 4     // the second still takes twice as long as the others (measured)
+#define COUNTING_RATE 0.1 // of learning
+#define STALLED 0.3 // a frame further off was disturbed, and tells no more than one so far
 
 prom_status prom_frame_step_init(prom_frame_step *step, prom_session *session,
                                  const char *selector, double budget_ms, double rule_scale,
@@ -82,17 +87,36 @@ static void describe(const prom_cut *cut, prom_frame_record *record)
     record->limited = cut->limited;
 }
 
+// Counting takes a frame longer, always by about the same.
+static void learn_counting(prom_frame_step *step, double draw_ms)
+{
+    double expected = step->guarantee.scale * step->cut.predicted_ms,
+           stalled = STALLED * expected;
+    double beyond = fmin(fmax(draw_ms - expected, -stalled), stalled);
+    double *usual = &step->beyond_ms[step->counts];
+    *usual += COUNTING_RATE * (beyond - *usual);
+}
+
+static double counting_ms(const prom_frame_step *step)
+{
+    const double *beyond = step->beyond_ms;
+    bool known = beyond[false] != 0 && beyond[true] != 0;
+    return known && step->counts ? fmax(beyond[true] - beyond[false], 0) : 0;
+}
+
 // What the frame may be predicted at, and what its prediction is corrected by, are those of its
 // start: the feedback comes after it.
 prom_frame_record prom_frame_step_draw(prom_frame_step *step, const prom_camera *camera,
                                        double start_ms)
 {
     prom_session *s = step->session;
-    const prom_guarantee *guarantee = &step->guarantee;
+    prom_guarantee *guarantee = &step->guarantee;
     prom_frame_options plain = {0};
 
-    double allowed = prom_guarantee_allowed(guarantee);
     prom_sight_begin(&step->sight, camera);
+    step->counts = prom_sight_counts(&step->sight);
+    prom_guarantee_set_extra(guarantee, counting_ms(step));
+    double allowed = prom_guarantee_allowed(guarantee);
     prom_switches switches = choose(step, camera, allowed);
     double selected = prom_clock_ms();
     prom_resolution_draw(&step->resolution, &step->sight, &step->cut, camera, &plain);
@@ -122,14 +146,22 @@ prom_frame_record prom_frame_step_draw(prom_frame_step *step, const prom_camera 
 
 void prom_frame_step_feed(prom_frame_step *step, const prom_frame_record *record)
 {
-    // The first frame touches everything for the first time.
-    bool first = !(step->measured_ms > 0);
     prom_guarantee_frame frame = {.draw_ms = record->draw_ms,
                                   .other_ms = record->select_ms + record->display_ms,
-                                  .aside = record->aside || first};
+                                  .aside = record->aside};
     memcpy(frame.terms_ms, step->cut.terms_ms, sizeof frame.terms_ms);
+    if (!step->session->frozen) learn_counting(step, record->draw_ms);
     prom_guarantee_feed(&step->guarantee, &frame);
     // A selector that reacts to times gets the expected ones where measured ones must not
     // count.
     step->measured_ms = step->session->frozen ? record->predicted_ms : record->frame_ms;
+}
+
+void prom_frame_step_warm(prom_frame_step *step, const prom_camera *camera)
+{
+    for (int i = 0; i < WARM_FRAMES; i++) {
+        prom_frame_record record = prom_frame_step_draw(step, camera, prom_clock_ms());
+        record.aside = true;
+        if (i + 1 == WARM_FRAMES) prom_frame_step_feed(step, &record);
+    }
 }

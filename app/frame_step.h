@@ -48,6 +48,9 @@ typedef struct prom_frame_step {
     prom_last_cut last;
     double rule_scale;
     double measured_ms; // what the last frame took; 0: there was none
+    bool counts;        // the frame's visible pixels are counted
+    double
+        beyond_ms[2]; // usual time beyond the prediction, not counted and counted; 0: none yet
     // The caller's:
     double dt_s;  // between frames, for how fast things move; 0: nothing does
     bool certify; // a bound is wanted
@@ -58,6 +61,9 @@ prom_status prom_frame_step_init(prom_frame_step *step, prom_session *session,
                                  const char *selector, double budget_ms, double rule_scale,
                                  prom_error *error);
 void prom_frame_step_finish(prom_frame_step *step);
+// To be called before the first frame, with its camera: draws a few for nobody, which touch
+// everything for the first time, and learns the machine's pace from the last.
+void prom_frame_step_warm(prom_frame_step *step, const prom_camera *camera);
 // Selects and draws a frame into the session's target and waits for it. start_ms: when the
 // frame began, by prom_clock_ms. What is the caller's in the record, and t_s, stays 0.
 prom_frame_record prom_frame_step_draw(prom_frame_step *step, const prom_camera *camera,

@@ -113,12 +113,21 @@ static void note(prom_sight *s, const prom_cut *cut, prom_ids ids, float scale)
     sighting->counts.count = cut->entries.count;
 }
 
+static bool is_far(const prom_sight *s)
+{
+    return prom_visibility_way(s->visibility) - s->way > COUNT_WAY;
+}
+
+bool prom_sight_counts(const prom_sight *s)
+{
+    return s->counter && (s->in_a_row || s->uncounted + 1 >= COUNT_EVERY || is_far(s));
+}
+
 // Whose ids the next frame shall write.
 static prom_ids due_ids(const prom_sight *s, const prom_cut *cut)
 {
-    if (!s->counter) return PROM_IDS_NONE;
-    bool far = prom_visibility_way(s->visibility) - s->way > COUNT_WAY;
-    if (!far && !s->in_a_row && s->uncounted + 1 < COUNT_EVERY) return PROM_IDS_NONE;
+    if (!prom_sight_counts(s)) return PROM_IDS_NONE;
+    bool far = is_far(s);
     bool turn = s->counted % BLENDED_EVERY == BLENDED_EVERY - 1;
     bool blended = turn && !far && has_glass(s, cut);
     return blended ? PROM_IDS_BLENDED : PROM_IDS_OPAQUE;

@@ -43,6 +43,8 @@ void prom_sight_finish(prom_sight *sight);
 // Takes the counts that have arrived, in a frozen session all of the frame before; to be called
 // before the cut is selected.
 void prom_sight_begin(prom_sight *sight, const prom_camera *camera);
+// Whether the next frame's pixels will be counted.
+bool prom_sight_counts(const prom_sight *sight);
 // Draws a cut into the session's target, has its pixels counted, and waits for the picture.
 void prom_sight_draw(prom_sight *sight, const prom_cut *cut, const prom_camera *camera,
                      const prom_frame_options *options);

@@ -235,13 +235,6 @@ static bool goes_on(const walk *w)
     return !w->options->frames || w->result->frames < w->options->frames;
 }
 
-// The first frame touches everything for the first time: it is drawn for nobody.
-static void warm_up(walk *w)
-{
-    prom_frame_record record = prom_frame_step_draw(&w->step, &w->camera, prom_clock_ms());
-    prom_frame_step_feed(&w->step, &record);
-}
-
 static void begin(walk *w)
 {
     w->camera = w->session->camera;
@@ -249,7 +242,7 @@ static void begin(walk *w)
     prom_walk_init(&w->motion, &w->camera, prom_walk_size(&w->session->model));
     w->on_path = true;
     w->playing = w->options->play;
-    warm_up(w);
+    prom_frame_step_warm(&w->step, &w->camera);
     prom_window_show(w->window);
     w->last_ms = prom_clock_ms();
 }

@@ -23,14 +23,17 @@
 // A miss more than accepted adds EXCESS_STEP of the quantile (or of QUANTILE_LEAST) to it, two
 // 3, three 7 times that, and no more are counted, so that the margin comes back once the cause
 // is gone. By simulation (tests/bench/bench_guarantee.c).
-#define EXCESS_STEP 0.15
+#define EXCESS_STEP 0.1
 #define EXCESS_MAX 3.0
+// Misses are forgotten so much faster than they are accepted: while nothing changes the
+// quantile keeps the rate, and needs no help.
+#define EXCESS_FORGOTTEN 2.0
 #define QUANTILE_LEAST 0.1
 // A score beyond the margin counts for no more than this times it.
 #define OUTLIER_SCORE 1.5
-// The largest of a few scores falls short of their quantile: of 20 normal ones, p99 is 1.25
+// The largest of a few scores falls short of their quantile: of 35 normal ones, p99 is 1.15
 // times as far out.
-#define FEW_SCORES 1.25
+#define FEW_SCORES 1.15
 
 // Charges follow a slow frame more than a quick one.
 #define CHARGE_UP 0.6
@@ -137,7 +140,7 @@ static size_t memory(const prom_guarantee *g)
 // Angelopoulos and Bates 2021, section 1), the calibration's until enough scores are known.
 static double quantile_of_scores(const prom_guarantee *g)
 {
-    double prior = -log1p(-g->device.margin), rate = g->options.miss_rate;
+    double prior = g->device.margin, rate = g->options.miss_rate;
     size_t limit = memory(g), count = g->scored < limit ? (size_t)g->scored : limit;
     if (!count) return prior;
     float sorted[PROM_GUARANTEE_SCORES];
@@ -162,31 +165,29 @@ static void set_margin(prom_guarantee *g)
 {
     g->quantile = fmax(quantile_of_scores(g), 0.0);
     double step = EXCESS_STEP * fmax(g->quantile, QUANTILE_LEAST);
-    double log_margin = g->quantile * widening(g) + step * (exp2(g->excess) - 1);
-    g->margin = fmin(-expm1(-log_margin), MARGIN_MAX);
+    g->margin = fmin(g->quantile * widening(g) + step * (exp2(g->excess) - 1), MARGIN_MAX);
 }
 
 // A score is noise only if the next frame does not show that the pace changed: that is the
 // scale's to answer. One far beyond the margin counts as one a bit beyond, lest a single stall
 // sets the margin while few scores are known.
-static void note_score(prom_guarantee *g, double log_score, bool noise)
+static void note_score(prom_guarantee *g, double score, bool noise)
 {
     if (!noise) {
         g->pending = NAN;
         return;
     }
     if (!isnan(g->pending)) g->scores[g->scored++ % PROM_GUARANTEE_SCORES] = (float)g->pending;
-    double most = OUTLIER_SCORE * fmax(-log1p(-g->margin), QUANTILE_LEAST);
-    g->pending = fmin(log_score, most);
+    g->pending = fmin(score, OUTLIER_SCORE * fmax(g->margin, QUANTILE_LEAST));
 }
 
 // Where the pace changes so often that its misses are no longer counted, changes are noise too.
-static void score(prom_guarantee *g, double log_score, bool changes)
+static void take_score(prom_guarantee *g, double score, bool changes)
 {
-    double miss = log_score > -log1p(-g->margin) ? 1.0 : 0.0;
-    double excess = g->excess + miss - g->options.miss_rate;
+    double miss = score > g->margin ? 1.0 : 0.0;
+    double excess = g->excess + miss - EXCESS_FORGOTTEN * g->options.miss_rate;
     g->excess = fmin(fmax(excess, 0.0), EXCESS_MAX);
-    note_score(g, log_score, !changes || excess >= EXCESS_MAX);
+    note_score(g, score, !changes || excess >= EXCESS_MAX);
 }
 
 // ---- the interface
@@ -214,18 +215,23 @@ const prom_cost_model *prom_guarantee_cost(const prom_guarantee *g)
 
 double prom_guarantee_allowed(const prom_guarantee *g)
 {
-    double left = (g->options.budget_ms - g->charge_ms) / g->scale * (1.0 - g->margin);
-    return fmax(left, 0.0);
+    double left = g->options.budget_ms - g->charge_ms;
+    return fmax(left * (1.0 - g->margin) - g->extra_ms, 0.0) / g->scale;
 }
 
 double prom_guarantee_expected(const prom_guarantee *g, double predicted_ms)
 {
-    return g->scale * predicted_ms;
+    return g->scale * predicted_ms + g->extra_ms;
 }
 
 double prom_guarantee_least_budget(const prom_guarantee *g, double predicted_ms)
 {
-    return predicted_ms * g->scale / (1.0 - g->margin) + g->charge_ms;
+    return (predicted_ms * g->scale + g->extra_ms) / (1.0 - g->margin) + g->charge_ms;
+}
+
+void prom_guarantee_set_extra(prom_guarantee *g, double extra_ms)
+{
+    g->extra_ms = fmax(extra_ms, 0.0);
 }
 
 void prom_guarantee_set_budget(prom_guarantee *g, double budget_ms)
@@ -233,17 +239,19 @@ void prom_guarantee_set_budget(prom_guarantee *g, double budget_ms)
     g->options.budget_ms = budget_ms;
 }
 
+// frame: without what was known to be besides the cut.
 static void learn(prom_guarantee *g, const prom_guarantee_frame *frame, double predicted)
 {
     double expected = g->scale * predicted;
-    double whole = fmax(frame->draw_ms + frame->other_ms - g->charge_ms, 1e-3 * expected);
+    double over = frame->draw_ms + frame->other_ms - g->charge_ms - expected;
+    double left = fmax(g->options.budget_ms - g->charge_ms, 1e-3 * g->options.budget_ms);
     bool near_budget = predicted >= NEAR_BUDGET * prom_guarantee_allowed(g);
     bool known = g->frames >= COLD_FRAMES;
     double error = log(frame->draw_ms / expected);
     bool changes = changes_pace(g, error);
     if (known && !changes) learn_terms(g, frame->terms_ms, error);
     follow(g, frame, changes);
-    if (known && near_budget && !frame->aside) score(g, log(whole / expected), changes);
+    if (known && near_budget && !frame->aside) take_score(g, over / left, changes);
     g->scale = scale_of_window(g);
     set_margin(g);
 }
@@ -255,6 +263,8 @@ void prom_guarantee_feed(prom_guarantee *g, const prom_guarantee_frame *frame)
     bool sound = predicted > 0.0 && isfinite(predicted) && frame->draw_ms > 0.0 &&
                  isfinite(frame->draw_ms) && isfinite(other) && other >= 0.0;
     if (!sound) return;
-    learn(g, frame, predicted);
+    prom_guarantee_frame cut_only = *frame;
+    cut_only.draw_ms = fmax(frame->draw_ms - g->extra_ms, 0.1 * frame->draw_ms);
+    learn(g, &cut_only, predicted);
     g->charge_ms += (other > g->charge_ms ? CHARGE_UP : CHARGE_DOWN) * (other - g->charge_ms);
 }

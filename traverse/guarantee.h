@@ -6,13 +6,13 @@
 //
 // Predictions are corrected by a fast global scale (what the machine does just now) and slow
 // factors of the terms (what this scene is like on this device), both bounded. What is left is
-// the score of a frame, actual / expected, in which other_ms beyond the charge counts as
-// drawing. The margin covers the quantile of the recent scores and, on top, as much as the
-// misses beyond the accepted ones ask for: the proportional and the integral part of a
-// conformal controller (Gibbs and Candès 2021, Adaptive conformal inference under distribution
-// shift; Angelopoulos, Candès and Tibshirani 2023, Conformal PID control for time series
-// prediction). Only frames predicted at nearly the budget move it. Plain numbers in and out, no
-// clock.
+// the score of a frame, actual - expected as a part of the budget, in which other_ms beyond the
+// charge counts as drawing. The margin covers the quantile of the recent scores and, on top, as
+// much as the misses beyond the accepted ones ask for: the proportional and the integral part
+// of a conformal controller (Gibbs and Candès 2021, Adaptive conformal inference under
+// distribution shift; Angelopoulos, Candès and Tibshirani 2023, Conformal PID control for time
+// series prediction). Only frames predicted at nearly the budget move it. Plain numbers in and
+// out, no clock.
 #ifndef PROM_TRAVERSE_GUARANTEE_H
 #define PROM_TRAVERSE_GUARANTEE_H
 
@@ -42,6 +42,7 @@ typedef struct prom_guarantee {
     double scale;     // fast: actual / predicted of the last frames
     double margin;    // part of the budget kept back for noise
     double charge_ms; // of the budget, for what is not drawn: selection and the like
+    double extra_ms;  // what the next frame draws besides its cut
     uint64_t frames;  // fed so far
     // More state belongs to guarantee.c.
     struct {
@@ -51,7 +52,7 @@ typedef struct prom_guarantee {
     unsigned window;             // of them since the machine last changed its pace
     // +-n: so many frames were slower (+) or quicker than expected in a row; by far.
     int side_run, far_run;
-    // Logarithms, of the frames that move the margin, a ring.
+    // Of the frames that move the margin, a ring.
     float scores[PROM_GUARANTEE_SCORES];
     uint64_t scored; // of them so far
     double pending;  // the last score, not among them yet; or NAN
@@ -70,6 +71,9 @@ double prom_guarantee_allowed(const prom_guarantee *guarantee);
 double prom_guarantee_expected(const prom_guarantee *guarantee, double predicted_ms);
 // The least budget with which a cut predicted at predicted_ms would be allowed.
 double prom_guarantee_least_budget(const prom_guarantee *guarantee, double predicted_ms);
+// What the next frames are known to take besides their cuts: it is neither scaled nor learnt
+// from.
+void prom_guarantee_set_extra(prom_guarantee *guarantee, double extra_ms);
 // The budget from now on: at rest more is allowed, and nothing of it counts as a miss.
 void prom_guarantee_set_budget(prom_guarantee *guarantee, double budget_ms);
 
