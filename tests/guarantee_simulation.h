@@ -42,7 +42,6 @@ typedef struct sim_run {
 } sim_run;
 
 #define SIM_BUDGET_MS 33.0
-#define SIM_MARGIN 0.1 // of the calibration
 #define SIM_TURN_FRAMES 5
 #define SIM_TURN_PERIOD 150
 
@@ -143,9 +142,16 @@ static void sim_draw(const sim_case *c, const prom_guarantee *g, int i, double s
     frame->other_ms = 1.0 * sim_noise(1.5, seed);
 }
 
+// What a calibration on a machine of this noise would keep back (app/calibration.c).
+static double sim_margin(double p99_p50)
+{
+    double p95_p50 = exp(log(p99_p50) * 1.644854 / 2.326348);
+    return fmin(fmax(1 - 1 / (p95_p50 * 1.08), 0.15), 0.3);
+}
+
 static void sim_walk(const sim_case *c, uint64_t seed, sim_run *run)
 {
-    prom_cost_model model = {.fixed_ms = 1, .margin = SIM_MARGIN};
+    prom_cost_model model = {.fixed_ms = 1, .margin = sim_margin(c->noise)};
     prom_guarantee_options options = {.budget_ms = SIM_BUDGET_MS,
                                       .miss_rate =
                                           c->miss_rate > 0 ? c->miss_rate : PROM_MISS_RATE};

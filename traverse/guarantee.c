@@ -23,7 +23,7 @@
 // A miss more than accepted adds EXCESS_STEP of the quantile (or of QUANTILE_LEAST) to it, two
 // 3, three 7 times that, and no more are counted, so that the margin comes back once the cause
 // is gone. By simulation (tests/bench/bench_guarantee.c).
-#define EXCESS_STEP 0.1
+#define EXCESS_STEP 0.15
 #define EXCESS_MAX 3.0
 // Misses are forgotten so much faster than they are accepted: while nothing changes the
 // quantile keeps the rate, and needs no help.
@@ -31,9 +31,9 @@
 #define QUANTILE_LEAST 0.1
 // A score beyond the margin counts for no more than this times it.
 #define OUTLIER_SCORE 1.5
-// The largest of a few scores falls short of their quantile: of 35 normal ones, p99 is 1.15
-// times as far out.
-#define FEW_SCORES 1.15
+// Of a few scores the second largest, which no single stall sets, falls short of their
+// quantile: of 35 normal ones, p99 is 1.45 times as far out.
+#define FEW_SCORES 1.45
 
 // Charges follow a slow frame more than a quick one.
 #define CHARGE_UP 0.6
@@ -150,7 +150,8 @@ static double quantile_of_scores(const prom_guarantee *g)
     double rank = fmin(ceil((double)(count + 1) * (1 - rate)), (double)count);
     double seen = (double)sorted[(size_t)rank - 1];
     double known = fmin(1.0, (double)count / fmin(1 / rate, (double)limit));
-    return known * seen + (1 - known) * fmax(prior, FEW_SCORES * seen);
+    double second = (double)sorted[count > 1 ? count - 2 : 0];
+    return known * seen + (1 - known) * fmax(prior, FEW_SCORES * second);
 }
 
 // The median of n frames strays by sqrt(pi / 2n) of their noise: right after a change of pace
