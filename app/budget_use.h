@@ -18,8 +18,8 @@ typedef struct prom_budget_use {
 
 typedef bool prom_frame_wanted(const prom_frame_record *record);
 // The choice mattered: full detail was predicted at more than could be spent, and the cheapest
-// cut was expected to fit. The latter without the margin: a wide one must not take the frames
-// away that it is to be judged by.
+// cut was expected to fit into the budget less the noise that the device was calibrated at. Not
+// the guarantee's margin: a wide one must not take the frames away that it is to be judged by.
 prom_frame_wanted prom_is_contested;
 
 // Over the wanted ones of `count` frames in a row; wanted: NULL takes all. A run, and a change,

@@ -138,7 +138,7 @@ prom_frame_record prom_frame_step_draw(prom_frame_step *step, const prom_camera 
         .switches = switches,
         .feasible = step->cut.cmin_ms <= allowed,
         .fits = prom_guarantee_expected(guarantee, step->cut.cmin_ms) + guarantee->charge_ms <=
-                guarantee->options.budget_ms,
+                guarantee->options.budget_ms * (1 - guarantee->device.margin),
     };
     describe(&step->cut, &record);
     return record;

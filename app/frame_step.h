@@ -29,7 +29,7 @@ typedef struct prom_frame_record {
     uint64_t cut_hash;          // of the entries' nodes and representations
     prom_switches switches;     // since the frame before
     bool feasible;              // the cheapest cut was within what could be spent
-    bool fits;                  // and was expected within the budget, if without a margin
+    bool fits;                  // it was expected within the budget less the device's noise
     bool limited;               // more time would have bought a better picture
     bool turned;                // the camera jumped, or turned fast. The caller's
     bool aside;                 // not one of the run, see prom_guarantee_frame. The caller's

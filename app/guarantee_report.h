@@ -13,7 +13,7 @@
 //     (of the run: count in each), overshoot: mean of frame time / budget - 1
 //   use_of_budget: mean frame time / budget
 //   contested: of the frames where full detail was predicted to exceed the budget and the
-//     cheapest cut, without a margin, to fit: frames, use_of_budget, std_ms, and misses as
+//     cheapest cut to fit, with the calibration's margin: frames, use_of_budget, std_ms, and misses as
 //     above but quarters
 //   cold_start: the same of the first 30 frames drawn, warm-up included
 //   after_turn: turns (the camera turned by more than 30 degrees in a frame, or jumped),
