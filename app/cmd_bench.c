@@ -273,7 +273,7 @@ prom_status prom_command_bench(int argc, char **argv, prom_error *error)
         .swaps = SWAPS,
         .oracle_frames = ORACLE_FRAMES};
     argp_parse(&argp, argc, argv, 0, NULL, &o);
-    if (!o.view.selector) o.view.selector = "greedy";
+    if (!o.view.selector) o.view.selector = PROM_SELECTOR_DEFAULT;
     if (!(o.view.budget_ms > 0)) o.view.budget_ms = DEFAULT_BUDGET_MS;
     o.loop.selector = o.view.selector;
     o.loop.budget_ms = o.view.budget_ms;

@@ -195,7 +195,8 @@ prom_status prom_command_shot(int argc, char **argv, prom_error *error)
 {
     shot_options o = {.view = prom_view_options_default};
     argp_parse(&argp, argc, argv, 0, NULL, &o);
-    if (!o.view.selector) o.view.selector = o.view.budget_ms > 0 ? "greedy" : "full";
+    if (!o.view.selector)
+        o.view.selector = o.view.budget_ms > 0 ? PROM_SELECTOR_DEFAULT : "full";
     prom_command_files files = {{o.model, prom_view_path_file(&o.view), o.view.profile},
                                 {&o.output}};
     prom_status status = prom_outputs_check(&files, error);

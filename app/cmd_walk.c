@@ -139,7 +139,7 @@ prom_status prom_command_walk(int argc, char **argv, prom_error *error)
     walk_options o = {.view = prom_view_options_default, .walk.rest_budget_ms = -1};
     o.view.choice.hysteresis = HYSTERESIS;
     argp_parse(&argp, argc, argv, 0, NULL, &o);
-    if (!o.view.selector) o.view.selector = "greedy";
+    if (!o.view.selector) o.view.selector = PROM_SELECTOR_DEFAULT;
     if (!(o.view.budget_ms > 0)) o.view.budget_ms = DEFAULT_BUDGET_MS;
     const char *slash = strrchr(o.model, '/');
     o.walk.name = slash ? slash + 1 : o.model;

@@ -21,6 +21,8 @@ prom_status prom_frame_step_init(prom_frame_step *step, prom_session *session,
     prom_guarantee_init(&step->guarantee, &session->cost, &options);
     prom_last_cut_init(&step->last, &session->model);
     step->selector = prom_selector_create(selector, &session->model, error);
+    const prom_selector_class *class = prom_selector_class_named(selector);
+    step->reacts = class && class->budgeted && !class->uses_cost;
     prom_status status = step->selector ? PROM_OK : error->status;
     if (!status) status = prom_sight_init(&step->sight, session, error);
     if (!status)
@@ -51,7 +53,11 @@ static prom_switches choose(prom_frame_step *step, const prom_camera *camera, do
     prom_view_init(&step->view, camera);
     prom_selection selection = prom_session_selection(
         step->session, &step->view, step->sight.visibility, allowed_ms, step->rule_scale);
-    selection.cost = prom_guarantee_cost(&step->guarantee);
+    prom_cost_model cost =
+        prom_cost_charged(prom_guarantee_cost(&step->guarantee), step->binds, 0);
+    selection.cost = &cost;
+    // A selector that reacts is not to be reacted for as well.
+    if (step->reacts) selection.budget_ms = step->guarantee.options.budget_ms;
     selection.measured_ms = step->measured_ms;
     selection.certify = step->certify;
     selection.last = &step->last;
@@ -123,6 +129,7 @@ prom_frame_record prom_frame_step_draw(prom_frame_step *step, const prom_camera 
     double end = prom_clock_ms();
 
     prom_draw_stats stats = prom_renderer_take_stats(s->renderer);
+    step->binds = (double)stats.calls;
     prom_frame_record record = {
         .start_ms = start_ms,
         .frame_ms = end - start_ms,

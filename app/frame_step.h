@@ -46,7 +46,9 @@ typedef struct prom_frame_step {
     prom_cut cut;   // the last frame's
     prom_view view; // and its
     prom_last_cut last;
+    bool reacts; // it follows the measured times by itself
     double rule_scale;
+    double binds;       // changes of state in the last frame
     double measured_ms; // what the last frame took; 0: there was none
     bool counts;        // the frame's visible pixels are counted
     double

@@ -65,7 +65,7 @@ prom_status prom_noise_floor_init(prom_noise_floor *floor, prom_session *session
                                   double budget_ms, uint32_t path_frames, prom_error *error)
 {
     static const uint32_t order[VIEWS] = {1, 0, 2}; // the middle first
-    const prom_still_options options = {.selector = "greedy",
+    const prom_still_options options = {.selector = PROM_SELECTOR_DEFAULT,
                                         .budget_ms = budget_ms,
                                         .rule_scale = 1,
                                         .path_frames = path_frames,

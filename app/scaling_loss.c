@@ -25,7 +25,7 @@ static prom_status begin(measuring *m, prom_session *session, prom_error *error)
     uint32_t width = session->camera.width, height = session->camera.height;
     size_t pixels = (size_t)width * height;
     *m = (measuring){.session = session, .width = width, .height = height};
-    m->selector = prom_selector_create("greedy", &session->model, error);
+    m->selector = prom_selector_create(PROM_SELECTOR_DEFAULT, &session->model, error);
     if (!m->selector) return error->status;
     m->metric =
         prom_metric_create(prom_metric_named(name) ? name : "flip", prom_session_ppd(session),
