@@ -56,7 +56,7 @@ prom_status prom_bench_write_csv(const char *path, const prom_loop_options *opti
     FILE *out = open_memstream(&text, &bytes);
     if (!out) return prom_fail(error, PROM_ERR_OUTPUT, "%s: %s", path, strerror(errno));
     fputs("frame,t_s,budget_ms,frame_ms,select_ms,predicted_ms,triangles,draws,cut_nodes,"
-          "switches,benefit_px,loss_px,feasible,contested,resolution,limited,gap,allowed_ms,"
+          "switches,benefit_px,loss_px,feasible,contested,resolution_scale,limited,gap,allowed_ms,"
           "scale,margin,start_unix_s,cut_hash,holes,accuracy,predicted_accuracy,flip,loss,"
           "hidden_cost,"
           "hidden_nodes\n",

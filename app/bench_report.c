@@ -93,7 +93,7 @@ static void set_found(json_t *run, const prom_run_facts *f, const prom_run_stati
     const prom_loop_result *r = f->result;
     set(run, "select_ms", pair_json("mean", t->select_ms.mean, "p99", t->select_ms.p99));
     set(run, "triangles", mean_json(t->triangles));
-    set(run, "resolution", mean_json(t->resolution));
+    set(run, "resolution_scale", mean_json(t->resolution));
     set(run, "draws", mean_json(t->draws));
     set(run, "cut_nodes", mean_json(t->cut_nodes));
     set(run, "switches", pair_json("mean", t->switches, "px", t->switched_px));

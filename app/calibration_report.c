@@ -41,6 +41,7 @@ typedef struct coefficient {
 static const coefficient coefficients[] = {
     COEFFICIENT("frame", "ms", fixed_ms, 1),
     COEFFICIENT("bind", "us", bind_ms, 1e3),
+    COEFFICIENT("uploading", "us", uploading_ms, 1e3),
     COEFFICIENT("upload", "us/MB", upload_ms, 1e9),
     COEFFICIENT("draw", "us", draw_ms, 1e3),
     COEFFICIENT("vertex", "ns", vertex_ms, 1e6),

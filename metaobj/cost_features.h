@@ -26,7 +26,8 @@ typedef struct prom_cost_features {
     double edges;
     double hidden_edges; // the same of the hidden pixels
     double binds;        // changes of state (textures, programs) between draws
-    double upload_bytes; // sent to the device meanwhile
+    double uploads;      // 1 where anything is sent to the device meanwhile
+    double upload_bytes; // and how much
 } prom_cost_features;
 
 // Kinds of work whose predictions may be off by different factors.

@@ -120,6 +120,7 @@ static prom_cost_features count_features(const calibration *c, const scene_plan 
 {
     prom_cost_features f = {.fixed = 1};
     f.upload_bytes = (double)scene_send(&c->kit, plan, c->renderer);
+    f.uploads = f.upload_bytes > 0;
     prom_renderer_take_stats(c->renderer);
     fill(c, plan, false);
     double shown = count_pixels(c, c->target);

@@ -19,6 +19,7 @@ static prom_cost_model random_device(uint64_t *seed)
 {
     prom_cost_model m = random_cost(seed);
     m.bind_ms = random_between(seed, 1e-3f, 1e-2f);
+    m.uploading_ms = random_between(seed, 0.1f, 1);
     m.upload_ms = random_between(seed, 1e-7f, 1e-6f);
     return m;
 }
@@ -36,7 +37,8 @@ static void make_samples(const prom_cost_model *truth, uint64_t *seed, double no
                                   .triangles = triangles};
         f->hidden = random_below(seed, 2) ? random_between(seed, 0, 3e6f) : 0;
         f->binds = 1 + random_below(seed, 300);
-        f->upload_bytes = random_below(seed, 2) ? random_between(seed, 0, 8e6f) : 0;
+        f->upload_bytes = random_below(seed, 2) ? random_between(seed, 1, 8e6f) : 0;
+        f->uploads = f->upload_bytes > 0;
         f->edges = random_between(seed, 0, 1) * sqrt(1e6 * triangles);
         f->hidden_edges = random_between(seed, 0, 1) * sqrt(1e6 * triangles);
         for (int k = 0; k < PROM_COST_KINDS; k++)
@@ -68,6 +70,7 @@ static void the_fit_recovers_a_known_model(void **state)
         assert_true(near_to(fit.hidden_edge_ms, truth.hidden_edge_ms, 1e-3));
         assert_true(near_to(fit.hidden_pixel_ms, truth.hidden_pixel_ms, 1e-3));
         assert_true(near_to(fit.bind_ms, truth.bind_ms, 1e-3));
+        assert_true(near_to(fit.uploading_ms, truth.uploading_ms, 1e-3));
         assert_true(near_to(fit.upload_ms, truth.upload_ms, 1e-3));
         assert_int_equal(fit.form, PROM_COST_SUM);
         for (int k = 0; k < PROM_COST_KINDS; k++)
@@ -121,12 +124,13 @@ static void the_fit_is_a_minimum(void **state)
         make_samples(&truth, &seed, 0.4, samples);
         assert_int_equal(prom_cost_fit(samples, SAMPLES, &fit, NULL), PROM_OK);
         if (fit.form != PROM_COST_SUM) continue; // of which only the turns' end is a minimum
-        enum { FIELDS = 9 + PROM_COST_KINDS };
+        enum { FIELDS = 10 + PROM_COST_KINDS };
         double at[FIELDS], least = -1.0;
         double *fields[FIELDS] = {&fit.fixed_ms,       &fit.draw_ms, &fit.vertex_ms,
                                   &fit.triangle_ms,    &fit.edge_ms, &fit.hidden_pixel_ms,
-                                  &fit.hidden_edge_ms, &fit.bind_ms, &fit.upload_ms};
-        for (int k = 0; k < PROM_COST_KINDS; k++) fields[9 + k] = &fit.pixel_ms[k];
+                                  &fit.hidden_edge_ms, &fit.bind_ms, &fit.upload_ms,
+                                  &fit.uploading_ms};
+        for (int k = 0; k < PROM_COST_KINDS; k++) fields[10 + k] = &fit.pixel_ms[k];
         for (int a = 0; a < FIELDS; a++) at[a] = *fields[a];
         for (int try = 0; try < 1 + 4 * FIELDS; try++) {
             for (int a = 0; a < FIELDS; a++) *fields[a] = at[a];
@@ -235,7 +239,7 @@ static void a_frame_is_made_of_its_terms(void **state)
             near_to(prom_cost_predict(&scaled, f), prom_cost_frame_ms(&max, terms), 1e-12));
         prom_cost_model charged = prom_cost_charged(&sum, f->binds, f->upload_bytes);
         prom_cost_features rest = *f;
-        rest.binds = rest.upload_bytes = 0;
+        rest.binds = rest.uploads = rest.upload_bytes = 0;
         assert_true(near_to(prom_cost_predict(&charged, &rest), all, 1e-12));
     }
 }
@@ -424,12 +428,12 @@ static void older_profiles_load(void **state)
     (void)state;
     prom_cost_model saved = some_profile(), loaded = {0};
     prom_error error = {0};
-    saved.bind_ms = saved.upload_ms = 0;
+    saved.bind_ms = saved.uploading_ms = saved.upload_ms = 0;
     saved.form = PROM_COST_SUM;
     assert_int_equal(prom_cost_save(&saved, path, &error), PROM_OK);
-    char *command = prom_format(
-        "sed -i '/bind_ms/d; /upload_ms/d; /\"form\"/d; s/\"version\": 3/\"version\": 2/' %s",
-        path);
+    char *command = prom_format("sed -i '/bind_ms/d; /uploading_ms/d; /upload_ms/d; "
+                                "/\"form\"/d; s/\"version\": 3/\"version\": 2/' %s",
+                                path);
     assert_int_equal(system(command), 0);
     prom_free(command);
     assert_int_equal(prom_cost_load(path, &loaded, &error), PROM_OK);

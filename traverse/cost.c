@@ -6,9 +6,9 @@
 void prom_cost_terms(const prom_cost_model *model, const prom_cost_features *features,
                      double terms[PROM_TERMS])
 {
-    terms[PROM_TERM_FIXED] = model->fixed_ms * features->fixed +
-                             model->bind_ms * features->binds +
-                             model->upload_ms * features->upload_bytes;
+    terms[PROM_TERM_FIXED] =
+        model->fixed_ms * features->fixed + model->bind_ms * features->binds +
+        model->uploading_ms * features->uploads + model->upload_ms * features->upload_bytes;
     terms[PROM_TERM_GEOMETRY] =
         model->draw_ms * features->draws + model->vertex_ms * features->vertices +
         model->triangle_ms * features->triangles + model->edge_ms * features->edges +
@@ -71,6 +71,7 @@ prom_cost_model prom_cost_scaled(const prom_cost_model *model, const double fact
     prom_cost_model scaled = *model;
     scaled.fixed_ms *= factors[PROM_TERM_FIXED];
     scaled.bind_ms *= factors[PROM_TERM_FIXED];
+    scaled.uploading_ms *= factors[PROM_TERM_FIXED];
     scaled.upload_ms *= factors[PROM_TERM_FIXED];
     scaled.draw_ms *= factors[PROM_TERM_GEOMETRY];
     scaled.vertex_ms *= factors[PROM_TERM_GEOMETRY];
@@ -86,6 +87,8 @@ prom_cost_model prom_cost_charged(const prom_cost_model *model, double binds,
                                   double upload_bytes)
 {
     prom_cost_model charged = *model;
-    charged.fixed_ms += model->bind_ms * binds + model->upload_ms * upload_bytes;
+    charged.fixed_ms += model->bind_ms * binds;
+    if (upload_bytes > 0.0)
+        charged.fixed_ms += model->uploading_ms + model->upload_ms * upload_bytes;
     return charged;
 }

@@ -19,7 +19,8 @@ typedef struct prom_cost_model {
     double edge_ms, hidden_edge_ms; // see prom_cost_features: edges
     double hidden_pixel_ms;         // a pixel drawn behind what is there already (early z)
     double bind_ms;                 // a change of state between draws
-    double upload_ms;               // a byte sent to the device
+    double uploading_ms;            // a frame in which anything is sent to the device
+    double upload_ms;               // a byte of it
     double mean_error;              // of the fit: mean |predicted/actual - 1|
     double worst_under;             // greatest actual/predicted - 1
     double margin; // part of the budget kept back for noise, from repeats at calibration

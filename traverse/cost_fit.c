@@ -17,6 +17,7 @@ enum {
     FIXED,
     BINDS,
     UPLOADS,
+    UPLOAD_BYTES,
     DRAWS,
     VERTICES,
     TRIANGLES,
@@ -39,7 +40,8 @@ static void columns_of(const prom_cost_features *f, double out[COLUMNS])
 {
     out[FIXED] = f->fixed;
     out[BINDS] = f->binds;
-    out[UPLOADS] = f->upload_bytes;
+    out[UPLOADS] = f->uploads;
+    out[UPLOAD_BYTES] = f->upload_bytes;
     out[DRAWS] = f->draws;
     out[VERTICES] = f->vertices;
     out[TRIANGLES] = f->triangles;
@@ -53,7 +55,8 @@ static void set_coefficients(prom_cost_model *model, const double x[COLUMNS])
 {
     model->fixed_ms = x[FIXED];
     model->bind_ms = x[BINDS];
-    model->upload_ms = x[UPLOADS];
+    model->uploading_ms = x[UPLOADS];
+    model->upload_ms = x[UPLOAD_BYTES];
     model->draw_ms = x[DRAWS];
     model->vertex_ms = x[VERTICES];
     model->triangle_ms = x[TRIANGLES];

@@ -15,7 +15,7 @@
 
 #define FORMAT "promenade-cost-profile"
 #define VERSION 3
-#define OLDEST_VERSION 2 // without form, bind_ms and upload_ms
+#define OLDEST_VERSION 2 // without form, bind_ms, uploading_ms and upload_ms
 #define FILE_BYTES_MAX 65536
 #define SIDE_MAX 65536
 
@@ -41,8 +41,9 @@ static const field fields[] = {
     FIELD(hidden_pixel_ms, 0.0, 1e6), FIELD(mean_error, 0.0, 1e6),
     FIELD(worst_under, 0.0, 1e6),     FIELD(margin, 0.0, 0.9),
     FIELD(bind_ms, 0.0, 1e6),         FIELD(upload_ms, 0.0, 1e6),
+    FIELD(uploading_ms, 0.0, 1e6),
 };
-enum { FIELD_COUNT = sizeof fields / sizeof *fields, OLDEST_FIELD_COUNT = FIELD_COUNT - 2 };
+enum { FIELD_COUNT = sizeof fields / sizeof *fields, OLDEST_FIELD_COUNT = FIELD_COUNT - 3 };
 
 // ---- saving
 

@@ -245,7 +245,8 @@ static void learn(prom_guarantee *g, const prom_guarantee_frame *frame, double p
 {
     double expected = g->scale * predicted;
     double over = frame->draw_ms + frame->other_ms - g->charge_ms - expected;
-    double left = fmax(g->options.budget_ms - g->charge_ms, 1e-3 * g->options.budget_ms);
+    // A frame that had to take more than there is tells what would do for it.
+    double left = fmax(g->options.budget_ms - g->charge_ms, expected);
     bool near_budget = predicted >= NEAR_BUDGET * prom_guarantee_allowed(g);
     bool known = g->frames >= COLD_FRAMES;
     double error = log(frame->draw_ms / expected);
