@@ -147,10 +147,11 @@ static double quantile_of_scores(const prom_guarantee *g)
     for (size_t i = 0; i < count; i++)
         sorted[i] = g->scores[(g->scored - 1 - i) % PROM_GUARANTEE_SCORES];
     qsort(sorted, count, sizeof *sorted, by_value);
-    double rank = fmin(ceil((double)(count + 1) * (1 - rate)), (double)count);
-    double seen = (double)sorted[(size_t)rank - 1];
-    double known = fmin(1.0, (double)count / fmin(1 / rate, (double)limit));
+    // Never the largest of all: a single stall is what the accepted misses are for.
+    size_t from_top = (size_t)fmax((double)(count + 1) * rate, 2.0);
     double second = (double)sorted[count > 1 ? count - 2 : 0];
+    double seen = from_top < count ? (double)sorted[count - from_top] : second;
+    double known = fmin(1.0, (double)count / fmin(1 / rate, (double)limit));
     return known * seen + (1 - known) * fmax(prior, FEW_SCORES * second);
 }
 
