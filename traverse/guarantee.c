@@ -25,9 +25,6 @@
 // is gone. By simulation (tests/bench/bench_guarantee.c).
 #define EXCESS_STEP 0.15
 #define EXCESS_MAX 3.0
-// Misses are forgotten so much faster than they are accepted: while nothing changes the
-// quantile keeps the rate, and needs no help.
-#define EXCESS_FORGOTTEN 2.0
 #define QUANTILE_LEAST 0.1
 // A score beyond the margin counts for no more than this times it.
 #define OUTLIER_SCORE 1.5
@@ -187,7 +184,7 @@ static void note_score(prom_guarantee *g, double score, bool noise)
 static void take_score(prom_guarantee *g, double score, bool changes)
 {
     double miss = score > g->margin ? 1.0 : 0.0;
-    double excess = g->excess + miss - EXCESS_FORGOTTEN * g->options.miss_rate;
+    double excess = g->excess + miss - g->options.miss_rate;
     g->excess = fmin(fmax(excess, 0.0), EXCESS_MAX);
     note_score(g, score, !changes || excess >= EXCESS_MAX);
 }
