@@ -10,6 +10,7 @@
 
 // A node is not opened if its own best picture is wrong by less than this many pixels in all.
 // By taste; 2000 such nodes, more than a walk shows, are a thousandth of a frame.
+#define MOST_NEARNESS 16.0f // nearer, the distance to the centre says little
 #define SMALL_LOSS_PX 0.5f
 // Or if it is this small, so that it has no more than TINY_LOSS_PX to lose: what is below it
 // has less than a pixel each.
@@ -170,6 +171,14 @@ static void flow_weight(prom_eval *eval, uint32_t node)
             (float)(mean > 0.0 ? (double)children[c].weight * (weight / mean) : weight);
 }
 
+// How much larger a child shows than it would from afar, beside its siblings: shares are baked
+// without perspective.
+static float nearness(const prom_eval_node *parent, const prom_eval_node *child)
+{
+    float ratio = parent->distance / fmaxf(child->distance, 1e-6f);
+    return fminf(fmaxf(ratio * ratio, 1.0f / MOST_NEARNESS), MOST_NEARNESS);
+}
+
 // Splits a node's footprint among its children by their baked shares, and what is visible of it
 // by what is known of them as well.
 static void flow_down(prom_eval *eval, uint32_t node)
@@ -178,6 +187,7 @@ static void flow_down(prom_eval *eval, uint32_t node)
     const prom_eval_node *n = &eval->nodes[node];
     uint32_t first = m->first_child[node], count = m->child_count[node];
     prom_eval_node *children = &eval->nodes[first];
+    for (uint32_t c = 0; c < count; c++) eval->in_view[c] *= nearness(n, &children[c]);
     prom_split_pixels(m, m->prototype[node], n->dir, n->footprint_px, eval->in_view, eval->px);
     for (uint32_t c = 0; c < count; c++) {
         if (children[c].culled) continue;

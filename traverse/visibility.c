@@ -13,6 +13,8 @@
 // Pixels of a footprint in which a counting that found nothing is believed at once: fewer are
 // seldom met by the samples.
 #define SURE_PX 64.0f
+// What shows more than this of itself is known to show; how much more, few samples do not tell.
+#define SEEN 0.05f
 // And how much is believed of one that found less than before, and of one that found nothing:
 // samples of a narrow view of something large come and go.
 #define FALL 0.5f
@@ -214,9 +216,14 @@ static void settle(prom_visibility *v, uint32_t node)
     if (!(sum->footprint_px > LEAST_PX) || sum->counted_px < 0.5f * sum->footprint_px) return;
     float now = clamp_share(sum->px / sum->footprint_px);
     float before = n->counted ? n->share : prior_of(v, node);
+    float sure = fminf(fmaxf(sum->footprint_px, sum->px) / SURE_PX, 1.0f);
     if (now < before) {
         float most = !n->counted ? 1.0f : sum->px > 0.0f ? FALL : FALL_TO_NOTHING;
-        now = before + fminf(sum->footprint_px / SURE_PX, most) * (now - before);
+        now = before + fminf(sure, most) * (now - before);
+    } else if (before > SEEN) {
+        now = before + sure * (now - before);
+    } else if (sure < 1.0f) {
+        now = fminf(now, 1.0f);
     }
     *n = (node_state){.moved = v->moved,
                       .turned = v->turned,

@@ -17,7 +17,7 @@
 // No share is smaller: of a full screen less than a pixel.
 #define PROM_VISIBILITY_LEAST (1.0f / (1 << 20))
 // Nor larger. Footprints are estimates: of some nodes more shows than they promise.
-#define PROM_VISIBILITY_MOST 4.0f
+#define PROM_VISIBILITY_MOST 64.0f
 
 typedef struct prom_visibility prom_visibility;
 
