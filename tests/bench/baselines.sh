@@ -32,6 +32,7 @@ percents="10 20 40"
 budgets=""
 ours=""
 baselines="meta funkhouser feedback distance pixels sse"
+near=0.05
 while getopts f:q:F:s:b:t:S:B: option; do
     case $option in
     f) frames=$OPTARG ;;
@@ -85,40 +86,14 @@ p95_of() {
     jq -r '.runs[0].frame_ms.p95' "$out/$1.json"
 }
 
-# pair COMPARED: ours and the baseline one after the other, since what the machine does meanwhile
+# pair [COMPARED]: ours and the baseline one after the other, since what the machine does meanwhile
 # moves both; sets $target and $time, their p95.
 pair() {
-    bench_ours "$1"
-    bench_baseline "$1"
+    bench_ours "${1:-0}"
+    bench_baseline "${1:-0}"
     target=$(p95_of "$tag-ours")
     time=$(p95_of "$tag-$baseline")
     echo "$tag: $baseline at $value has a p95 of $time ms, ours $target" >&2
-}
-
-near() {
-    holds "$time / $target <= 1.05 && $time / $target >= 0.95"
-}
-
-# find_factor: from $factor to one at which $baseline's p95 is that of ours; $limit is set when that
-# would be beyond what is tried.
-find_factor() {
-    low="" high="" limit=""
-    for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14; do
-        pair 0
-        if near; then return; fi
-        if holds "$time < $target"; then low=$factor; else high=$factor; fi
-        if [ -z "$high" ]; then
-            if holds "$low >= 64"; then limit=yes && return; fi
-            factor=$(calc "$low * 2")
-        elif [ -z "$low" ]; then
-            if holds "$high <= 1 / 64"; then limit=yes && return; fi
-            factor=$(calc "$high / 2")
-        else
-            # It jumps, or noise has put one on the wrong side: there is nothing between them.
-            if holds "$high / $low < 1.02"; then return; fi
-            factor=$(calc "sqrt($low * $high)")
-        fi
-    done
 }
 
 # row NAME PARAMETER: against the run of ours.
@@ -140,9 +115,9 @@ row() {
 compare() {
     factor=1
     for _ in 1 2 3; do
-        find_factor
+        find_factor pair $near 0.02
         pair "$compared"
-        if near || [ -n "$limit" ]; then break; fi
+        if is_near $near || [ -n "$limit" ]; then break; fi
     done
     row "$tag-ours" "$budget ms"
     case $baseline in

@@ -56,6 +56,36 @@ mark() {
     if holds "$1 > $2"; then echo "**$1**"; else echo "$1"; fi
 }
 
+# find_factor TRY NEAR APART: doubles or halves $factor until TRY's $time has passed $target, then
+# bisects, until they are within NEAR of each other (0.05: 5 %). Ends too where two factors with
+# nothing between them differ by less than APART; sets $limit when it would have to go beyond 1/64
+# or 64. TRY is a command that sets $time and $target.
+# shellcheck disable=SC2034,SC2154 # limit is for the caller; time, target are set by TRY
+find_factor() {
+    low="" high="" limit=""
+    for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14; do
+        "$1"
+        if is_near "$2"; then return; fi
+        if holds "$time < $target"; then low=$factor; else high=$factor; fi
+        if [ -z "$high" ]; then
+            if holds "$low >= 64"; then limit=yes && return; fi
+            factor=$(calc "$low * 2 < 64 ? $low * 2 : 64")
+        elif [ -z "$low" ]; then
+            if holds "$high <= 1 / 64"; then limit=yes && return; fi
+            factor=$(calc "$high / 2 > 1 / 64 ? $high / 2 : 1 / 64")
+        else
+            # It jumps, or noise has put one on the wrong side: there is nothing between them.
+            if holds "$high / $low < 1 + $3"; then return; fi
+            factor=$(calc "sqrt($low * $high)")
+        fi
+    done
+}
+
+# is_near NEAR: whether $time is within NEAR of $target.
+is_near() {
+    holds "$time / $target <= 1 + $1 && $time / $target >= 1 - $1"
+}
+
 # full_mean NAME FRAMES: mean time of full detail on $model and $path at $size, by a run of
 # $program kept as $out/NAME.json.
 # shellcheck disable=SC2154 # set by the script

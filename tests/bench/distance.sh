@@ -11,22 +11,22 @@
 #     -m LIST budgets in milliseconds instead
 #
 # MODEL is a .prom file, PATH a camera path or `auto`. For each budget greedy walks first; then the
-# factor on the distances (--distance-scale) is found with which `distance` takes the same mean
+# factor on the distances (--rule-scale) is found with which `distance` takes the same mean
 # time: doubled or halved until the time is passed, then by bisection, until both are within 3 %
 # in runs one after the other, whose figures are the rows. Where no factor does (within
 # 1/64 to 64), the nearest is kept, and `ratio` says how far off it is.
 # It measures times, so nothing else should keep the machine busy.
 # Reports stay in FOLDER; FOLDER/distance.md is the table, also printed.
 set -eu
+here=$(dirname "$0")
+# shellcheck source-path=SCRIPTDIR
+. "$here/common.sh"
 frames=300
 compared=30
 sizes="1280,720 640,360"
 percents="130 100"
 budgets=""
-usage() {
-    sed -n '2,22s/^# \{0,1\}//p' "$0" >&2
-    exit 1
-}
+near=0.03
 while getopts f:a:s:b:m: option; do
     case $option in
     f) frames=$OPTARG ;;
@@ -44,16 +44,6 @@ out=$2
 shift 2
 mkdir -p "$out"
 
-# calc EXPRESSION: its value, by awk.
-calc() {
-    awk "BEGIN { printf \"%.6g\", ($1) }" < /dev/null
-}
-
-# holds CONDITION: whether it is true, by awk.
-holds() {
-    awk "BEGIN { exit !($1) }" < /dev/null
-}
-
 mean_of() {
     jq -r '.runs[0].frame_ms.mean' "$out/$1.json"
 }
@@ -62,41 +52,15 @@ mean_of() {
 # NAME.json and NAME.csv.
 bench() {
     "$program" bench "$model" --path "$path" --resolution "$size" --selector "$2" \
-        --budget-ms "$3" --distance-scale "$4" --frames "$5" --check-accuracy "$6" \
+        --budget-ms "$3" --rule-scale "$4" --frames "$5" --check-accuracy "$6" \
         --quality-frames "$6" --report "$out/$1.json" --csv "$out/$1.csv" --quiet > /dev/null
 }
 
-# try_scale: sets $time to the mean of `distance` at $scale; called within find_scale.
+# try_scale: sets $time to the mean of `distance` at $factor.
 try_scale() {
-    bench "$tag-distance" distance "$budget" "$scale" "$frames" 0
+    bench "$tag-distance" distance "$budget" "$factor" "$frames" 0
     time=$(mean_of "$tag-distance")
-    echo "$tag: scale $scale takes $time ms, greedy $target ms" >&2
-}
-
-near() {
-    holds "$time / $target <= 1.03 && $time / $target >= 0.97"
-}
-
-# find_scale: from $scale to one at which `distance` takes $target ms; sets $limit when that would
-# be beyond the scales tried.
-find_scale() {
-    low="" high="" limit=""
-    for _ in 1 2 3 4 5 6 7 8 9 10 11 12; do
-        try_scale
-        if near; then return; fi
-        if holds "$time < $target"; then low=$scale; else high=$scale; fi
-        if [ -z "$high" ]; then
-            if holds "$low >= 64"; then limit=yes && return; fi
-            scale=$(calc "$low * 2 < 64 ? $low * 2 : 64")
-        elif [ -z "$low" ]; then
-            if holds "$high <= 1 / 64"; then limit=yes && return; fi
-            scale=$(calc "$high / 2 > 1 / 64 ? $high / 2 : 1 / 64")
-        else
-            # Noise has put one on the wrong side: there is nothing to find between them.
-            if holds "$high / $low < 1.03"; then return; fi
-            scale=$(calc "sqrt($low * $high)")
-        fi
-    done
+    echo "$tag: scale $factor takes $time ms, greedy $target ms" >&2
 }
 
 # row SELECTOR SCALE RATIO
@@ -113,23 +77,23 @@ row() {
 # compare: greedy at $budget and `distance` in the same time. What the machine does meanwhile
 # moves both, so the search goes on from a new run of greedy when the last pair disagrees.
 compare() {
-    scale=1
+    factor=1
     bench "$tag-greedy" greedy "$budget" 1 "$frames" 0
     for _ in 1 2 3; do
         target=$(mean_of "$tag-greedy")
-        find_scale
+        find_factor try_scale $near 0.03
         bench "$tag-greedy" greedy "$budget" 1 "$frames" "$compared"
-        bench "$tag-distance" distance "$budget" "$scale" "$frames" "$compared"
+        bench "$tag-distance" distance "$budget" "$factor" "$frames" "$compared"
         target=$(mean_of "$tag-greedy")
         time=$(mean_of "$tag-distance")
-        if near || [ -n "$limit" ]; then break; fi
+        if is_near $near || [ -n "$limit" ]; then break; fi
     done
     row greedy "" 1
-    row distance "$(calc "$scale")" "$(calc "int(1000 * $time / $target + 0.5) / 1000")"
+    row distance "$(calc "$factor")" "$(calc "int(1000 * $time / $target + 0.5) / 1000")"
 }
 
 walk() {
-    name=$(echo "$scene" | tr / -)-$(echo "$size" | tr , x)
+    name=$(tag_of "$scene")-$(tag_of "$size")
     list=$budgets
     if [ -z "$list" ]; then
         bench "$name" distance 1000000 1 "$frames" 0
@@ -149,9 +113,7 @@ walk() {
         "worst % | predicted % | triangles |"
     echo "| --- | --- | ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"
     for pair in "$@"; do
-        model=${pair%:*} path=${pair##*:}
-        scene=$(basename "$model" .prom)
-        [ "$path" = auto ] || scene=$scene/$(basename "$path" .path)
+        take_walk "$pair"
         for size in $sizes; do walk; done
     done
 } | tee "$out/distance.md"

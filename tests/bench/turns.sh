@@ -17,14 +17,13 @@
 # sees); `first` the loss of the first of them.
 # FOLDER/turns.md is the table, also printed.
 set -eu
+here=$(dirname "$0")
+# shellcheck source-path=SCRIPTDIR
+. "$here/common.sh"
 budget=33
 size="1280,720"
 modes="none frame"
 pictures=""
-usage() {
-    sed -n '2,19s/^# \{0,1\}//p' "$0" >&2
-    exit 1
-}
 while getopts b:s:v:p option; do
     case $option in
     b) budget=$OPTARG ;;

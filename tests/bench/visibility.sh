@@ -16,15 +16,14 @@
 # It measures times, so nothing else should keep the machine busy.
 # Reports stay in FOLDER; FOLDER/visibility.md is the table, also printed.
 set -eu
+here=$(dirname "$0")
+# shellcheck source-path=SCRIPTDIR
+. "$here/common.sh"
 frames=300
 compared=30
 sizes="1280,720 640,360"
 percents="20 40 60 80"
 modes="none frame"
-usage() {
-    sed -n '2,20s/^# \{0,1\}//p' "$0" >&2
-    exit 1
-}
 while getopts f:q:s:b:v: option; do
     case $option in
     f) frames=$OPTARG ;;
