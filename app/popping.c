@@ -75,11 +75,7 @@ static void bring_background_near(float *depth, size_t pixels)
 static void look(prom_popping *p, prom_session *session, const prom_camera *camera,
                  const prom_cut *cut, prom_popping_frame *frame)
 {
-    prom_view view;
-    prom_view_init(&view, camera);
-    const prom_selection selection = {
-        .view = &view, .cost = &session->cost, .budget_ms = INFINITY};
-    prom_selector_run(p->select_full, &selection, &p->full);
+    prom_session_select(session, p->select_full, NULL, camera, INFINITY, 1, &p->full);
     draw(p, session, camera, cut, frame->shown);
     draw(p, session, camera, &p->full, frame->full);
     prom_target_read_depth(p->target, 0, 0, camera->width, camera->height, frame->depth);

@@ -1,10 +1,8 @@
-// LINK: prom_render prom_traverse prom_benefit prom_metaobj
+// LINK: prom_app prom_render prom_traverse prom_benefit prom_metaobj
 // NEEDS: promenade
 //
 // Popping, on a field of striped balls: a camera at rest or in motion makes none, a ball that
 // is drawn in another way makes some, where it stands. Warping, on depths made by hand.
-#include "app/counted_picture.c"
-#include "app/pixel_shares.c"
 #include "app/popping.c"
 #include "app/warp.c"
 

@@ -255,6 +255,11 @@ void prom_eval_run(prom_eval *eval, const prom_selection *selection, prom_eval_o
 
 // ---- cuts
 
+double prom_eval_budget(const prom_eval *eval)
+{
+    return eval->selection->budget_ms * (1.0 - 1e-9);
+}
+
 void prom_eval_begin_cut(const prom_eval *eval, prom_cut *cut)
 {
     cut->entries.count = 0;

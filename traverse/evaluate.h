@@ -73,6 +73,9 @@ void prom_eval_run(prom_eval *eval, const prom_selection *selection, prom_eval_o
 // and where the picture cannot become visibly better. `user` is the evaluation.
 bool prom_eval_open_visible(void *user, uint32_t node);
 
+// What a running sum of costs, fixed_ms included, may reach: a hair less than the budget, over
+// which rounding must not lift the finished cut.
+double prom_eval_budget(const prom_eval *eval);
 // Starts a cut and appends a node drawn by one of its options (its index in eval->options).
 void prom_eval_begin_cut(const prom_eval *eval, prom_cut *cut);
 void prom_eval_emit(const prom_eval *eval, uint32_t node, uint32_t option, prom_cut *cut);

@@ -74,7 +74,7 @@ double prom_guarantee_least_budget(const prom_guarantee *guarantee, double predi
 // What the next frames are known to take besides their cuts: it is neither scaled nor learnt
 // from.
 void prom_guarantee_set_extra(prom_guarantee *guarantee, double extra_ms);
-// The budget from now on: at rest more is allowed, and nothing of it counts as a miss.
+// The budget from now on; what has been learnt stays.
 void prom_guarantee_set_budget(prom_guarantee *guarantee, double budget_ms);
 
 typedef struct prom_guarantee_frame {

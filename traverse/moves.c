@@ -49,6 +49,12 @@ uint32_t prom_moves_choice(const prom_prices *prices, uint32_t node)
     return prices->eval->nodes[node].first_option + (p->choice - p->first);
 }
 
+uint32_t prom_moves_cheapest(void *user, uint32_t node)
+{
+    const prom_eval *eval = user;
+    return eval->nodes[node].cmin_option;
+}
+
 // ---- what can be done
 
 typedef struct move {

@@ -29,6 +29,8 @@ typedef uint32_t prom_moves_choose(void *user, uint32_t node);
 // The root must not be culled.
 void prom_moves_start(prom_moves *moves, const prom_prices *prices, prom_moves_choose *choose,
                       void *user);
+// The cheapest cut; user: the evaluation.
+prom_moves_choose prom_moves_cheapest;
 // The choice of the last look, to choose by.
 uint32_t prom_moves_choice(const prom_prices *prices, uint32_t node);
 

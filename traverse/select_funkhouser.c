@@ -105,8 +105,7 @@ static void select_funkhouser(void *pointer, const prom_selection *selection, pr
     prom_eval *eval = &state->eval;
     prom_eval_run(eval, selection, NULL, NULL);
     prom_eval_begin_cut(eval, cut);
-    // Rounding of the running sum must not lift the finished cut over the budget.
-    cut->limited = climb(state, start(state), selection->budget_ms * (1.0 - 1e-9));
+    cut->limited = climb(state, start(state), prom_eval_budget(eval));
     for (uint32_t i = 0; i < eval->visited_count; i++)
         if (is_drawn(eval, eval->visited[i]))
             prom_eval_emit(eval, eval->visited[i], state->option[eval->visited[i]], cut);

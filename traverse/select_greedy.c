@@ -279,8 +279,7 @@ static double select_once(greedy_state *g, const prom_selection *selection, floa
         g->heap.count = 0;
         g->stack[0] = (placed){0, 0};
         place_stacked(g, 1);
-        // Rounding of the running sum must not lift the finished cut over the budget.
-        double budget = selection->budget_ms * (1.0 - 1e-9) - eval->fixed_ms;
+        double budget = prom_eval_budget(eval) - eval->fixed_ms;
         left = buy_steps(g, budget - eval->nodes[0].cmin);
         take_better(g, budget);
         emit_cut(g, cut);

@@ -95,12 +95,6 @@ static uint32_t choose(void *user, uint32_t node)
     return prom_moves_choice(&s->prices, node);
 }
 
-static uint32_t choose_cheapest(void *user, uint32_t node)
-{
-    const incremental_state *s = user;
-    return s->eval.nodes[node].cmin_option;
-}
-
 // Returns the slope of the first step that did not fit; 0: all did.
 static double change_cut(incremental_state *s, double budget)
 {
@@ -116,7 +110,7 @@ static double change_cut(incremental_state *s, double budget)
     prom_moves_coarsen(&s->moves, budget);
     // Coarsening one by one may end beside the cheapest cut.
     if (prom_moves_cost(&s->moves) > budget)
-        prom_moves_start(&s->moves, &s->prices, choose_cheapest, s);
+        prom_moves_start(&s->moves, &s->prices, prom_moves_cheapest, &s->eval);
     prom_moves_trade(&s->moves, budget, s->eval.visited_count);
     double refused = prom_moves_refine(&s->moves, budget, root->cmin_benefit);
     s->price = refused;
@@ -132,8 +126,7 @@ static double select_among(incremental_state *s, const prom_selection *selection
     prom_eval_run(eval, selection, near ? open_near : prom_eval_open_visible,
                   near ? (void *)s : eval);
     prom_eval_begin_cut(eval, cut);
-    // Rounding of the running sum must not lift the finished cut over the budget.
-    double budget = selection->budget_ms * (1.0 - 1e-9) - eval->fixed_ms;
+    double budget = prom_eval_budget(eval) - eval->fixed_ms;
     bool fits = !eval->nodes[0].culled && eval->nodes[0].cmin <= budget;
     return fits ? change_cut(s, budget) : -1.0;
 }

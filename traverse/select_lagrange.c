@@ -52,12 +52,6 @@ static uint32_t priced_choice(void *user, uint32_t node)
     return prom_moves_choice(&l->prices, node);
 }
 
-static uint32_t cheapest_choice(void *user, uint32_t node)
-{
-    const lagrange_state *l = user;
-    return l->eval.nodes[node].cmin_option;
-}
-
 // Returns the slope of the first step that did not fit; 0: all did.
 static double find_cut(lagrange_state *l, double budget)
 {
@@ -71,7 +65,7 @@ static double find_cut(lagrange_state *l, double budget)
         prom_moves_start(&l->moves, &l->prices, priced_choice, l);
         l->price = b.high;
     } else {
-        prom_moves_start(&l->moves, &l->prices, cheapest_choice, l);
+        prom_moves_start(&l->moves, &l->prices, prom_moves_cheapest, &l->eval);
         l->price = b.has_over ? b.low : 0.0;
     }
     return prom_moves_refine(&l->moves, budget, root->cmin_benefit);
@@ -83,8 +77,7 @@ static void select_lagrange(void *pointer, const prom_selection *selection, prom
     prom_eval *eval = &l->eval;
     prom_eval_run(eval, selection, prom_eval_open_visible, eval);
     prom_eval_begin_cut(eval, cut);
-    // Rounding of the running sum must not lift the finished cut over the budget.
-    double budget = selection->budget_ms * (1.0 - 1e-9) - eval->fixed_ms, refused = 0.0;
+    double budget = prom_eval_budget(eval) - eval->fixed_ms, refused = 0.0;
     if (!eval->nodes[0].culled && eval->nodes[0].cmin <= budget) {
         refused = find_cut(l, budget);
         prom_moves_emit(&l->moves, cut);

@@ -142,8 +142,7 @@ static void push_children(meta_state *state, uint32_t node)
 static void phase_2(meta_state *state, prom_cut *cut)
 {
     const prom_eval *eval = &state->eval;
-    // Rounding of the running sum must not lift the finished cut over the budget.
-    double budget = eval->selection->budget_ms * (1.0 - 1e-9);
+    double budget = prom_eval_budget(eval);
     double total = eval->fixed_ms + state->nodes[0].cost;
     prom_heap_push(&state->list, state->nodes[0].key, 0);
     while (state->list.count) {

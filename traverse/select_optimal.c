@@ -208,7 +208,7 @@ static void select_optimal(void *pointer, const prom_selection *selection, prom_
     prom_eval *eval = &o->eval;
     prom_eval_run(eval, selection, NULL, NULL);
     prom_eval_begin_cut(eval, cut);
-    o->budget = selection->budget_ms * (1.0 - 1e-9) - eval->fixed_ms;
+    o->budget = prom_eval_budget(eval) - eval->fixed_ms;
     o->exact = true;
     o->most = POINTS / (size_t)(eval->visited_count + 1);
     if (o->most > FRONT_MAX) o->most = FRONT_MAX;

@@ -169,7 +169,7 @@ static int by_gain(const void *a, const void *b)
 
 static void choose_regions(prom_steady *s, const prom_eval *eval, double total)
 {
-    double budget = eval->selection->budget_ms * (1.0 - 1e-9);
+    double budget = prom_eval_budget(eval);
     uint32_t most = eval->selection->max_switches, used = 0;
     region *r = s->regions.data;
     size_t count = s->regions.count;
