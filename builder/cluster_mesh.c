@@ -1,10 +1,10 @@
 #include "builder/cluster_mesh.h"
 
 #include "builder/cluster_mesh_color.h"
-#include "builder/simplify_cards.h"
-#include "builder/simplify_distance.h"
-#include "builder/simplify_reduce.h"
-#include "builder/simplify_weld.h"
+#include "builder/simplify/cards.h"
+#include "builder/simplify/distance.h"
+#include "builder/simplify/reduce.h"
+#include "builder/simplify/weld.h"
 
 #include <math.h>
 

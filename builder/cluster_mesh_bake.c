@@ -2,9 +2,9 @@
 #include "builder/cluster_mesh.h"
 
 #include "builder/cluster_mesh_sample.h"
-#include "builder/simplify.h"
-#include "builder/simplify_cards.h"
-#include "builder/simplify_work.h"
+#include "builder/simplify/simplify.h"
+#include "builder/simplify/cards.h"
+#include "builder/simplify/work.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 #include "builder/cluster_mesh_color.h"
 
-#include "builder/simplify_distance.h"
+#include "builder/simplify/distance.h"
 
 #include <math.h>
 #include <stdlib.h>

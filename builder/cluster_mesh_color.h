@@ -2,7 +2,7 @@
 #ifndef PROM_BUILDER_CLUSTER_MESH_COLOR_H
 #define PROM_BUILDER_CLUSTER_MESH_COLOR_H
 
-#include "builder/simplify_work.h"
+#include "builder/simplify/work.h"
 
 // Gives the vertices of `faces` the area-weighted mean colour of the original triangles nearest
 // to them, so that a brick house with windows gets the colour of both and not that of whichever

@@ -2,7 +2,7 @@
 #include "builder/build.h"
 
 #include "builder/cluster_mesh.h"
-#include "builder/simplify.h"
+#include "builder/simplify/simplify.h"
 #include "metaobj/base/log.h"
 
 #include <pthread.h>

@@ -15,10 +15,18 @@ function(prom_flags target)
     endif()
 endfunction()
 
-# prom_library(name LINK public... PRIVATE private...): the folder's sources as one static library.
+# prom_library(name LINK public... PRIVATE private...): the folder's sources as one static library;
+# folders in it with a CMakeLists.txt are libraries of their own.
 function(prom_library name)
     cmake_parse_arguments(ARG "" "" "LINK;PRIVATE" ${ARGN})
     file(GLOB_RECURSE sources CONFIGURE_DEPENDS "*.c" "*.cpp" "*.h")
+    file(GLOB_RECURSE nested RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} "*/CMakeLists.txt")
+    foreach(list_file ${nested})
+        get_filename_component(folder ${list_file} DIRECTORY)
+        if(folder)
+            list(FILTER sources EXCLUDE REGEX "^${CMAKE_CURRENT_SOURCE_DIR}/${folder}/")
+        endif()
+    endforeach()
     add_library(${name} STATIC ${sources})
     set_target_properties(${name} PROPERTIES LINKER_LANGUAGE C)
     prom_flags(${name})

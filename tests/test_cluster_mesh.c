@@ -1,7 +1,7 @@
 // LINK: prom_builder
 #include "builder/cluster_mesh.h"
 
-#include "builder/simplify.h"
+#include "builder/simplify/simplify.h"
 #include "metaobj/base/threads.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 // LINK: prom_builder
-#include "builder/simplify.h"
+#include "builder/simplify/simplify.h"
 
 #include "metaobj/base/alloc.h"
 

@@ -1,6 +1,6 @@
 // Mesh simplification behind our own interface (meshoptimizer at present).
-#ifndef PROM_BUILDER_SIMPLIFY_H
-#define PROM_BUILDER_SIMPLIFY_H
+#ifndef PROM_SIMPLIFY_SIMPLIFY_H
+#define PROM_SIMPLIFY_SIMPLIFY_H
 
 #include "metaobj/mesh.h"
 #include "metaobj/model.h"

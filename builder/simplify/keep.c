@@ -1,7 +1,7 @@
-#include "builder/simplify_keep.h"
+#include "builder/simplify/keep.h"
 
-#include "builder/simplify_cards.h"
-#include "builder/simplify_corner.h"
+#include "builder/simplify/cards.h"
+#include "builder/simplify/corner.h"
 
 #include <math.h>
 #include <stdlib.h>

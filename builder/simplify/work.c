@@ -1,6 +1,6 @@
-#include "builder/simplify_work.h"
+#include "builder/simplify/work.h"
 
-#include "builder/simplify_sides.h"
+#include "builder/simplify/sides.h"
 
 #include <assert.h>
 #include <math.h>

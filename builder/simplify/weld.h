@@ -1,6 +1,6 @@
 // Private to simplification: welding by nearness.
-#ifndef PROM_BUILDER_SIMPLIFY_WELD_H
-#define PROM_BUILDER_SIMPLIFY_WELD_H
+#ifndef PROM_SIMPLIFY_WELD_H
+#define PROM_SIMPLIFY_WELD_H
 
 #include "metaobj/mesh.h"
 

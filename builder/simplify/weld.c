@@ -1,8 +1,8 @@
 // Welding: equal vertices, and positions within a tolerance.
-#include "builder/simplify.h"
+#include "builder/simplify/simplify.h"
 
-#include "builder/simplify_weld.h"
-#include "builder/simplify_work.h"
+#include "builder/simplify/weld.h"
+#include "builder/simplify/work.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-#include "builder/simplify_sides.h"
+#include "builder/simplify/sides.h"
 
 // A triangle's places, turned so that the smallest is first: equal triangles, equal triples.
 static void triple_of(const prom_work *work, uint32_t triangle, uint32_t triple[3])

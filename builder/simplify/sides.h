@@ -1,8 +1,8 @@
 // Private to simplification: which triangles are the back side of others.
-#ifndef PROM_BUILDER_SIMPLIFY_SIDES_H
-#define PROM_BUILDER_SIMPLIFY_SIDES_H
+#ifndef PROM_SIMPLIFY_SIDES_H
+#define PROM_SIMPLIFY_SIDES_H
 
-#include "builder/simplify_work.h"
+#include "builder/simplify/work.h"
 
 typedef enum prom_side {
     PROM_SIDE_KEEP,

@@ -1,9 +1,9 @@
-#include "builder/simplify_reduce.h"
+#include "builder/simplify/reduce.h"
 
-#include "builder/simplify_cards.h"
-#include "builder/simplify_collapse.h"
-#include "builder/simplify_distance.h"
-#include "builder/simplify_keep.h"
+#include "builder/simplify/cards.h"
+#include "builder/simplify/collapse.h"
+#include "builder/simplify/distance.h"
+#include "builder/simplify/keep.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-#include "builder/simplify_corner.h"
+#include "builder/simplify/corner.h"
 
 #include <math.h>
 

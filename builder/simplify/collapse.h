@@ -1,8 +1,8 @@
 // Private to simplification: edge collapse and vertex clustering over a work's triangles.
-#ifndef PROM_BUILDER_SIMPLIFY_COLLAPSE_H
-#define PROM_BUILDER_SIMPLIFY_COLLAPSE_H
+#ifndef PROM_SIMPLIFY_COLLAPSE_H
+#define PROM_SIMPLIFY_COLLAPSE_H
 
-#include "builder/simplify_work.h"
+#include "builder/simplify/work.h"
 
 typedef struct prom_collapse_options {
     uint32_t target; // triangles of the result (front faces)

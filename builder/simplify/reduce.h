@@ -1,9 +1,9 @@
 // Private to simplification: one reduction of a work's triangles, leaf cards apart from the
 // rest.
-#ifndef PROM_BUILDER_SIMPLIFY_REDUCE_H
-#define PROM_BUILDER_SIMPLIFY_REDUCE_H
+#ifndef PROM_SIMPLIFY_REDUCE_H
+#define PROM_SIMPLIFY_REDUCE_H
 
-#include "builder/simplify_work.h"
+#include "builder/simplify/work.h"
 
 typedef struct prom_reduce_options {
     uint32_t target;  // triangles with back sides

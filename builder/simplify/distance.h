@@ -1,9 +1,9 @@
 // Private to simplification: nearest points of a triangle surface, and deviation measured with
 // them.
-#ifndef PROM_BUILDER_SIMPLIFY_DISTANCE_H
-#define PROM_BUILDER_SIMPLIFY_DISTANCE_H
+#ifndef PROM_SIMPLIFY_DISTANCE_H
+#define PROM_SIMPLIFY_DISTANCE_H
 
-#include "builder/simplify_work.h"
+#include "builder/simplify/work.h"
 
 // A box hierarchy over triangles in spatial order.
 typedef struct prom_surface {

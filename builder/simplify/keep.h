@@ -1,8 +1,8 @@
 // Private to simplification: edge collapse that loses no part of note.
-#ifndef PROM_BUILDER_SIMPLIFY_KEEP_H
-#define PROM_BUILDER_SIMPLIFY_KEEP_H
+#ifndef PROM_SIMPLIFY_KEEP_H
+#define PROM_SIMPLIFY_KEEP_H
 
-#include "builder/simplify_collapse.h"
+#include "builder/simplify/collapse.h"
 
 // As prom_work_collapse, but components that would vanish though they are large (a door of two
 // parallel faces costs next to nothing to fold and then to eat up from its rim) are taken out,

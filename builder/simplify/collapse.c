@@ -1,6 +1,6 @@
-#include "builder/simplify_collapse.h"
+#include "builder/simplify/collapse.h"
 
-#include "builder/simplify_corner.h"
+#include "builder/simplify/corner.h"
 
 #include <math.h>
 #include <meshoptimizer.h>

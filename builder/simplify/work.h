@@ -9,8 +9,8 @@
 // be kept) and come back when the result is put together.
 //
 // Index lists below are front faces over the work's vertices.
-#ifndef PROM_BUILDER_SIMPLIFY_WORK_H
-#define PROM_BUILDER_SIMPLIFY_WORK_H
+#ifndef PROM_SIMPLIFY_WORK_H
+#define PROM_SIMPLIFY_WORK_H
 
 #include "metaobj/base/alloc.h"
 #include "metaobj/mesh.h"

@@ -1,4 +1,4 @@
-#include "builder/simplify_cards.h"
+#include "builder/simplify/cards.h"
 
 #include <math.h>
 #include <stdlib.h>

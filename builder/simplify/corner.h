@@ -1,8 +1,8 @@
 // Private to simplification: which of the vertices at a place a remaining corner takes.
-#ifndef PROM_BUILDER_SIMPLIFY_CORNER_H
-#define PROM_BUILDER_SIMPLIFY_CORNER_H
+#ifndef PROM_SIMPLIFY_CORNER_H
+#define PROM_SIMPLIFY_CORNER_H
 
-#include "builder/simplify_work.h"
+#include "builder/simplify/work.h"
 
 // How alike vertices must be to be one for the simplifier.
 typedef enum prom_reading {

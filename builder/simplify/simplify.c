@@ -1,6 +1,6 @@
-#include "builder/simplify.h"
+#include "builder/simplify/simplify.h"
 
-#include "builder/simplify_reduce.h"
+#include "builder/simplify/reduce.h"
 
 #include <assert.h>
 #include <math.h>

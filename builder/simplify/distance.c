@@ -1,4 +1,4 @@
-#include "builder/simplify_distance.h"
+#include "builder/simplify/distance.h"
 
 #include <math.h>
 #include <meshoptimizer.h>

@@ -4,10 +4,10 @@
 // bald. Cards are thinned instead: a share of them goes, evenly in space, and the others grow
 // about their centres so that the area stays (Cook et al. 2007, "Stochastic Simplification of
 // Aggregate Detail", keep the area in this way).
-#ifndef PROM_BUILDER_SIMPLIFY_CARDS_H
-#define PROM_BUILDER_SIMPLIFY_CARDS_H
+#ifndef PROM_SIMPLIFY_CARDS_H
+#define PROM_SIMPLIFY_CARDS_H
 
-#include "builder/simplify_work.h"
+#include "builder/simplify/work.h"
 
 typedef struct prom_component {
     uint32_t triangles;
