@@ -63,8 +63,8 @@ void prom_records_change(prom_records *records, uint32_t corner, uint32_t from, 
     assert(records->last[corner / 3] == current(records));
     const size_t first = prom_record_changes(records, current(records)).first;
     const size_t count = records->changes.count;
-    const prom_vertex_change *last = records->changes.data + count - 1;
-    if (count == first || last->from != from || last->to != to)
+    prom_vertex_change *data = records->changes.data;
+    if (count == first || data[count - 1].from != from || data[count - 1].to != to)
         prom_array_push(&records->changes, (prom_vertex_change){.from = from, .to = to});
     prom_array_push(&records->corners, corner);
     records->changes.data[records->changes.count - 1].corners_end =
