@@ -99,8 +99,9 @@ void prom_first_near(const prom_vertex *vertices, uint32_t count, float toleranc
 // cells would outrun their integers.
 #define LEAST_TOLERANCE 1e-7f
 
-static bool snap_positions(prom_mesh *mesh, float tolerance)
+bool prom_mesh_snap(prom_mesh *mesh, float tolerance, uint32_t *moved)
 {
+    *moved = 0;
     float greatest = 0;
     for (uint32_t i = 0; i < mesh->vertex_count; i++)
         for (int k = 0; k < 3; k++) {
@@ -111,16 +112,20 @@ static bool snap_positions(prom_mesh *mesh, float tolerance)
     if (!(tolerance > 0)) return false;
     uint32_t *first = prom_alloc(mesh->vertex_count, sizeof *first);
     prom_first_near(mesh->vertices, mesh->vertex_count, tolerance, false, first);
-    for (uint32_t i = 0; i < mesh->vertex_count; i++)
-        memcpy(mesh->vertices[i].position, mesh->vertices[first[i]].position,
-               sizeof mesh->vertices[i].position);
+    for (uint32_t i = 0; i < mesh->vertex_count; i++) {
+        float *to = mesh->vertices[i].position;
+        const float *from = mesh->vertices[first[i]].position;
+        *moved += to[0] != from[0] || to[1] != from[1] || to[2] != from[2];
+        memcpy(to, from, 3 * sizeof *to);
+    }
     prom_free(first);
     return true;
 }
 
 void prom_mesh_weld(prom_mesh *mesh, float position_tolerance)
 {
-    if (position_tolerance > 0) snap_positions(mesh, position_tolerance);
+    uint32_t moved;
+    if (position_tolerance > 0) prom_mesh_snap(mesh, position_tolerance, &moved);
     prom_work work;
     prom_work_init(&work, mesh);
     prom_mesh welded;
@@ -132,7 +137,8 @@ void prom_mesh_weld(prom_mesh *mesh, float position_tolerance)
 
 void prom_mesh_weld_surface(prom_mesh *mesh, float position_tolerance)
 {
-    if (!(position_tolerance > 0) || !snap_positions(mesh, position_tolerance)) return;
+    uint32_t moved;
+    if (!(position_tolerance > 0) || !prom_mesh_snap(mesh, position_tolerance, &moved)) return;
     uint32_t *first = prom_alloc(mesh->vertex_count, sizeof *first);
     prom_first_near(mesh->vertices, mesh->vertex_count, position_tolerance, true, first);
     for (uint32_t i = 0; i < mesh->index_count; i++) mesh->indices[i] = first[mesh->indices[i]];
