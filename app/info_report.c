@@ -1,6 +1,7 @@
 #include "app/info_report.h"
 
 #include "app/output.h"
+#include "builder/simplify/repair.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -54,16 +55,16 @@ static void set_count(json_t *object, const char *key, uint64_t count)
     set(object, key, json_integer((json_int_t)count));
 }
 
-// The builder's counts, {} if the file has none.
-static json_t *found_json(const prom_info_facts *f)
+// The builder's counts under a key, {} if the file has none.
+static json_t *counts_json(const prom_info_facts *f, const char *meta)
 {
-    const char *text = prom_container_meta(f->container, "found");
-    json_t *found = text ? json_loads(text, 0, NULL) : NULL;
-    if (!json_is_object(found)) {
-        json_decref(found);
-        found = json_object();
+    const char *text = prom_container_meta(f->container, meta);
+    json_t *counts = text ? json_loads(text, 0, NULL) : NULL;
+    if (!json_is_object(counts)) {
+        json_decref(counts);
+        counts = json_object();
     }
-    return found;
+    return counts;
 }
 
 static json_t *meta_json(const prom_info_facts *f, const char *key)
@@ -169,7 +170,8 @@ json_t *prom_info_json(const prom_info_facts *f)
     set(json, "source", meta_json(f, "source"));
     set(json, "settings", meta_json(f, "settings"));
     set(json, "device", meta_json(f, "device"));
-    set(json, "found", found_json(f));
+    set(json, "found", counts_json(f, "found"));
+    set(json, "repair", counts_json(f, "repair"));
     set_count(json, "triangles", m->triangles);
     set(json, "size",
         json_pack("[o, o, o]", prom_json_number(m->size[0]), prom_json_number(m->size[1]),
@@ -211,7 +213,7 @@ static void print_meta(const prom_info_facts *f, const char *label, const char *
 
 static void print_found(const prom_info_facts *f)
 {
-    json_t *found = found_json(f), *value;
+    json_t *found = counts_json(f, "found"), *value;
     const char *key, *comma = "";
     if (json_object_size(found)) printf("%-16s ", "import found");
     json_object_foreach(found, key, value)
@@ -222,6 +224,19 @@ static void print_found(const prom_info_facts *f)
     }
     if (*comma) putchar('\n');
     json_decref(found);
+}
+
+static void print_repair(const prom_info_facts *f)
+{
+    json_t *counts = counts_json(f, "repair"), *value;
+    prom_repair_report report = {0};
+    const char *key;
+    json_object_foreach(counts, key, value) if (json_integer_value(value) > 0)
+        prom_repair_set(&report, key, (uint64_t)json_integer_value(value));
+    char *text = prom_repair_text(&report);
+    if (json_object_size(counts)) printf("%-16s %s\n", "repair", *text ? text : "nothing");
+    prom_free(text);
+    json_decref(counts);
 }
 
 static void print_tree(const prom_model_facts *m)
@@ -302,6 +317,7 @@ void prom_info_print(const prom_info_facts *f)
     print_meta(f, "settings", "settings");
     print_meta(f, "device", "device");
     print_found(f);
+    print_repair(f);
     print_tree(&f->model);
     print_measured(&f->measured);
     print_cells(f);

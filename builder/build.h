@@ -5,6 +5,7 @@
 #include "builder/bake.h"
 #include "builder/measure.h"
 #include "builder/pipeline.h"
+#include "builder/simplify/repair.h"
 #include "builder/store.h"
 #include "metaobj/base/log.h"
 #include "metaobj/base/threads.h"
@@ -35,6 +36,7 @@ typedef struct prom_shape_build {
     uint32_t level_count;
     prom_mesh merge; // a level with its materials baked to colours, for cluster meshes
     float merge_error;
+    prom_repair_report repair;      // of all meshes that came in
     uint64_t hash;                  // of the levels' meshes
     uint64_t levels_key, views_key; // of its units of work
 } prom_shape_build;
@@ -58,6 +60,7 @@ typedef struct prom_build_state {
     prom_texture *textures;       // of the source images
     prom_shape_build *shapes;     // as objects.shapes
     prom_cluster_build *clusters; // as tree.clusters
+    prom_repair_report repair;    // of all shapes
     float mean_luminance;         // of the scene, linear
     bool *boxed;                  // per prototype: gets a textured box within the byte budget
 
@@ -91,7 +94,7 @@ typedef struct prom_build_state {
 // ---- stages, in this order (each in the file of its name)
 
 prom_status prom_stage_textures(prom_build_state *b, prom_error *error);
-// Weld, levels, baked colours: on all cores.
+// Repair, levels, baked colours: on all cores.
 prom_status prom_stage_levels(prom_build_state *b, prom_error *error);
 // Representations of leaves: upload, impostors, accuracy.
 prom_status prom_stage_leaves(prom_build_state *b, prom_error *error);

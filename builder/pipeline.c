@@ -227,6 +227,9 @@ static prom_status record_settings(prom_build_state *b, const char *scene, prom_
              b->objects.split, b->objects.gathered, b->objects.chunks, b->objects.backdrops,
              b->objects.blended, b->objects.instanced);
     if (!status) status = prom_writer_set_meta(b->writer, "found", text, error);
+    char *repair = prom_repair_json(&b->repair);
+    if (!status) status = prom_writer_set_meta(b->writer, "repair", repair, error);
+    prom_free(repair);
     return status;
 }
 

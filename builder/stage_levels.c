@@ -2,7 +2,9 @@
 #include "builder/build.h"
 
 #include "builder/cluster_mesh.h"
+#include "builder/simplify/repair.h"
 #include "builder/simplify/simplify.h"
+#include "builder/simplify/work.h"
 #include "metaobj/base/log.h"
 
 #include <pthread.h>
@@ -45,6 +47,7 @@ static void pack_levels(const prom_shape_build *s, prom_pack *pack)
     }
     prom_pack_mesh(pack, &s->merge);
     prom_pack_bytes(pack, &s->merge_error, sizeof s->merge_error);
+    prom_pack_bytes(pack, &s->repair, sizeof s->repair);
 }
 
 static void finish_meshes(prom_shape_build *s)
@@ -54,6 +57,7 @@ static void finish_meshes(prom_shape_build *s)
         s->levels[l] = (prom_level){0};
     }
     prom_mesh_finish(&s->merge);
+    s->repair = (prom_repair_report){0};
     s->level_count = 0;
 }
 
@@ -70,6 +74,7 @@ static bool unpack_levels(prom_shape_build *s, const prom_pack *pack, uint32_t m
     }
     prom_unpack_mesh(&in, 0, &s->merge);
     prom_unpack_bytes(&in, &s->merge_error, sizeof s->merge_error);
+    prom_unpack_bytes(&in, &s->repair, sizeof s->repair);
     if (prom_unpack_end(&in) && s->level_count) return true;
     finish_meshes(s);
     return false;
@@ -92,18 +97,20 @@ static void keep_levels(prom_build_state *b, const prom_shape_build *s)
     prom_array_finish(&pack);
 }
 
-// Welds, but leaves a mesh without any area as it is: it shows nothing, and does no harm.
-static void weld(prom_mesh *mesh)
+// Mends, but leaves a mesh without any area as it is: it shows nothing, and does no harm.
+static void mend(prom_mesh *mesh, const prom_repair_options *options, prom_repair_report *sum)
 {
-    prom_mesh welded;
-    prom_mesh_copy(&welded, mesh);
-    prom_mesh_weld(&welded, 0);
-    if (!welded.index_count) {
-        prom_mesh_finish(&welded);
+    prom_mesh mended;
+    prom_repair_report report;
+    prom_mesh_copy(&mended, mesh);
+    prom_mesh_repair(&mended, options, &report);
+    if (!mended.index_count) {
+        prom_mesh_finish(&mended);
         return;
     }
+    prom_repair_report_add(sum, &report);
     prom_mesh_finish(mesh);
-    *mesh = welded;
+    *mesh = mended;
 }
 
 // Puts a level where its triangles belong, behind the object itself.
@@ -117,7 +124,8 @@ static void insert(prom_shape_build *s, prom_level level)
     s->levels[at] = level;
 }
 
-static void add_artists_levels(prom_shape_build *s, prom_shape *shape)
+static void add_artists_levels(prom_shape_build *s, prom_shape *shape,
+                               const prom_repair_options *options)
 {
     s->levels[0].switch_distance = shape->level_count ? shape->until : INFINITY;
     for (uint32_t l = 0; l < shape->level_count && s->level_count < PROM_LEVELS_MAX; l++) {
@@ -125,17 +133,28 @@ static void add_artists_levels(prom_shape_build *s, prom_shape *shape)
                             .artist = true,
                             .switch_distance = shape->levels[l].until};
         shape->levels[l].mesh = (prom_mesh){0};
-        weld(&level.mesh);
+        mend(&level.mesh, options, &s->repair);
+        prom_mesh_optimize(&level.mesh);
         level.error = prom_mesh_deviation(&s->levels[0].mesh, &level.mesh);
         insert(s, level);
     }
 }
 
+// A locked border must stay where the neighbour's is. Backdrops may be seen from within, with
+// normals that say otherwise.
+static prom_repair_options how_to_mend(const prom_shape *shape, bool lock)
+{
+    bool backdrop = shape->layer == PROM_LAYER_BACKDROP;
+    return (prom_repair_options){.tolerance = lock ? -1.0f : PROM_REPAIR_TOLERANCE,
+                                 .orient = backdrop ? PROM_ORIENT_NOT : PROM_ORIENT_BY_NORMALS};
+}
+
 static void make_levels(prom_build_state *b, prom_shape *shape, prom_shape_build *s)
 {
-    weld(&shape->mesh);
     bool fixed = shape->layer == PROM_LAYER_BACKDROP || shape->layer == PROM_LAYER_BLENDED;
     bool lock = shape->lock_border || is_sheet(&shape->bounds);
+    prom_repair_options mending = how_to_mend(shape, lock);
+    mend(&shape->mesh, &mending, &s->repair);
     prom_mesh meshes[PROM_OWN_LEVELS_MAX];
     float errors[PROM_OWN_LEVELS_MAX];
     uint32_t count = prom_simplify_levels(&shape->mesh, lock, PROM_LEVEL_MIN_TRIANGLES,
@@ -155,7 +174,7 @@ static void make_levels(prom_build_state *b, prom_shape *shape, prom_shape_build
     if (!fixed)
         prom_mesh_bake_colors(&meshes[merge], b->source.materials.data, b->textures, &s->merge);
     s->merge_error = errors[merge];
-    add_artists_levels(s, shape);
+    add_artists_levels(s, shape, &mending);
 }
 
 // Waits until there is room; one shape at a time always goes on.
@@ -234,6 +253,17 @@ static float in_steps(float luminance)
     return prom_srgb_to_linear(roundf(prom_linear_to_srgb(luminance) * 32.0f) / 32.0f);
 }
 
+static void sum_up_repair(prom_build_state *b)
+{
+    prom_repair_report *r = &b->repair;
+    for (size_t i = 0; i < b->objects.shapes.count; i++)
+        prom_repair_report_add(r, &b->shapes[i].repair);
+    if (!prom_repair_mended(r)) return;
+    char *text = prom_repair_text(r);
+    prom_log(PROM_LOG_INFO, "repair: %s", text);
+    prom_free(text);
+}
+
 prom_status prom_stage_levels(prom_build_state *b, prom_error *error)
 {
     size_t count = b->objects.shapes.count;
@@ -248,6 +278,7 @@ prom_status prom_stage_levels(prom_build_state *b, prom_error *error)
     prom_status status = prom_build_goes_on(b, error);
     if (status) return status;
     prom_build_end_progress(b, &job.progress);
+    sum_up_repair(b);
     b->mean_luminance = in_steps(mean_luminance(b));
     for (size_t i = 0; i < b->source.images.count; i++) // needed for the baked colours
         prom_texture_finish(&b->textures[i]);
