@@ -13,6 +13,7 @@ typedef struct record_subject {
     const uint32_t *point;           // per vertex; NULL: a vertex is its point
     const prom_vertex *vertices;     // NULL: positions are not looked at
     uint32_t vertex_count;           // with those made
+    bool joined;                     // collapses of pairs without an edge join pieces
 } record_subject;
 
 static inline uint32_t record_count(const record_subject *s)
@@ -23,6 +24,14 @@ static inline uint32_t record_count(const record_subject *s)
 static inline mesh_facts record_facts(const record_subject *s, const uint32_t *corners)
 {
     return mesh_facts_of(corners, s->records->triangle_slots, s->point, s->vertex_count);
+}
+
+// What the states are measured by.
+static inline mesh_facts record_original(const record_subject *s)
+{
+    mesh_facts original = record_facts(s, s->original);
+    if (s->joined) original.most_sharing = original.most_along = UINT32_MAX;
+    return original;
 }
 
 static inline bool record_same(const record_subject *s, const uint32_t *a, const uint32_t *b)
@@ -105,7 +114,7 @@ static inline const char *record_prefixes_are_meshes(const record_subject *s, ui
 {
     prom_replay replay;
     const char *wrong = NULL;
-    const mesh_facts original = record_facts(s, s->original);
+    const mesh_facts original = record_original(s);
     prom_replay_init(&replay, s->records, s->original);
     for (uint32_t i = 0; i < samples && !wrong; i++) {
         const uint32_t count = random_below(&seed, record_count(s) + 1);
@@ -151,7 +160,7 @@ static inline const char *record_walks_are_meshes(const record_subject *s, uint3
     prom_replay replay;
     const char *wrong = NULL;
     const uint32_t count = record_count(s), every = steps / samples + 1;
-    const mesh_facts original = record_facts(s, s->original);
+    const mesh_facts original = record_original(s);
     prom_replay_init(&replay, s->records, s->original);
     for (uint32_t i = 0, forward = 8; i < steps && count && !wrong; i++) {
         if (!random_below(&seed, 2 * count)) forward = 1 + random_below(&seed, 9);
@@ -198,7 +207,7 @@ static inline const char *records_stand_alone(const record_subject *s, uint32_t 
     prom_replay replay;
     const char *wrong = NULL;
     const uint32_t all = record_count(s);
-    const mesh_facts original = record_facts(s, s->original);
+    const mesh_facts original = record_original(s);
     uint8_t *chosen = prom_calloc(all, 1);
     uint32_t *ancestors = prom_alloc(all, sizeof *ancestors);
     prom_replay_init(&replay, s->records, s->original);
