@@ -515,6 +515,50 @@ static void normals_protect_their_faces(void **state)
     prom_mesh_finish(&before);
 }
 
+// Normals that contradict each other say nothing about the windings.
+static void quarrelling_normals_are_not_believed(void **state)
+{
+    (void)state;
+    prom_mesh mesh, before;
+    uint32_t seed = 14;
+    init_sheet(&mesh, 10);
+    unweld(&mesh);
+    turn_some(&mesh, 30, &seed);
+    for (uint32_t v = 0; v < mesh.vertex_count; v++) // by triangle
+        if (v / 3 * 7 % 10 < 4) mesh.vertices[v].normal[1] = -127;
+    prom_mesh_repair(&mesh, &(prom_repair_options){.orient = PROM_ORIENT_NOT},
+                     &(prom_repair_report){0});
+    prom_mesh_copy(&before, &mesh);
+    prom_repair_report r = repair(&mesh, NULL);
+    assert_int_equal(r.turned, 0);
+    assert_true(r.clashing_edges > 0);
+    assert_true(same_mesh(&before, &mesh));
+    prom_mesh_finish(&mesh);
+    prom_mesh_finish(&before);
+}
+
+// Of three sheets along one edge none has a side that the others would prove; but a large
+// surface may touch others somewhere.
+static void few_tangled_edges_do_no_harm(void **state)
+{
+    (void)state;
+    for (uint32_t n = 1; n <= 8; n += 7) {
+        prom_mesh mesh;
+        init_sheet(&mesh, n);
+        prom_vertex top = mesh.vertices[0];
+        top.position[1] = 1;
+        uint32_t a = add_vertex(&mesh, top);
+        top.position[1] = -1;
+        uint32_t b = add_vertex(&mesh, top);
+        add_triangles(&mesh, (uint32_t[6]){0, 1, a, 0, 1, b}, 2);
+        turn(&mesh, n * n * 2 - 1);
+        prom_repair_report r = repair(&mesh, NULL);
+        assert_int_equal(r.non_manifold_edges, 1);
+        assert_int_equal(r.turned, n == 8);
+        prom_mesh_finish(&mesh);
+    }
+}
+
 // A room is a box seen from within: its normals say so, or nothing does.
 static void rooms_and_backdrops_stay(void **state)
 {
@@ -705,6 +749,8 @@ int main(void)
         cmocka_unit_test(turned_faces_come_back_by_normals),
         cmocka_unit_test(turned_faces_come_back_by_shape),
         cmocka_unit_test(normals_protect_their_faces),
+        cmocka_unit_test(quarrelling_normals_are_not_believed),
+        cmocka_unit_test(few_tangled_edges_do_no_harm),
         cmocka_unit_test(rooms_and_backdrops_stay),
         cmocka_unit_test(one_sided_bands_stay),
         cmocka_unit_test(edges_of_three_faces_are_counted),

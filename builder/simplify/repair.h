@@ -22,8 +22,8 @@
 // in no patch and never turned. A face in a second material over another turns with it.
 typedef enum prom_repair_orient {
     // Where the faces of a patch disagree, or a closed patch is inside out, those faces are
-    // turned whose normals at all three corners say so; the patch takes the side that more of
-    // its area has normals for. For meshes whose vertex normals are the author's word.
+    // turned whose normals at all three corners are against them; but only if the patch's
+    // normals are of one mind about its side. For meshes whose normals are the author's word.
     PROM_ORIENT_BY_NORMALS,
     // Where the faces of a patch disagree, they are turned to one side: of a closed patch that
     // of a positive volume, of an open one that of the greater area. Normals that are against

@@ -4,15 +4,27 @@
 #include "builder/simplify/repair_edges.h"
 #include "builder/simplify/work.h"
 
+#include <math.h>
+
+// Normals are believed where those of this part of a patch's area, by taste, say the same: the
+// rest may be creases and slivers. Where they contradict each other it is they that are wrong,
+// and turning faces by them would tear holes.
+#define VOUCHED 0.9
+// A patch with more than one edge of three faces or more to so many of its faces is no surface
+// that has sides (by taste: ruins cut out of walls come apart into patches of a few faces).
+#define TANGLED 20
+
 // Faces of a patch are of two parities: neighbours of one parity agree about their side.
 typedef struct patch {
-    uint32_t faces[2], against[2]; // by parity; against: all three normals are
+    uint32_t faces[2]; // by parity
     double area[2];
     double vouched;  // area whose normals are for parity 0 being as it is and 1 turned over,
                      // less the opposite
     double volume;   // with parity 1 turned over, six times
     float origin[3]; // of the volume: near, which keeps it exact
-    bool closed, one_sided; // one_sided: no choice of sides makes all agree
+    bool closed;
+    bool one_sided;   // no choice of sides makes all agree
+    uint32_t tangled; // its edges of three faces or more
 } patch;
 
 typedef struct orienter {
@@ -64,7 +76,6 @@ static void add_face(const orienter *o, patch *p, uint32_t t)
     int parity = o->parity[t], say = normals_say(o, t, cross);
     double area = glm_vec3_norm(cross), sign = parity ? -1 : 1;
     p->faces[parity]++;
-    p->against[parity] += say < 0;
     p->area[parity] += area;
     p->vouched += sign * say * area;
     p->volume += sign * glm_vec3_dot(from, cross);
@@ -81,6 +92,7 @@ static void cross_edge(orienter *o, patch *p, uint32_t corner)
     const prom_edge *e = &o->edges.edges.data[o->edges.of[corner]];
     if (e->uses != 2) {
         p->closed = false;
+        p->tangled += e->uses > 2;
         return;
     }
     uint32_t here = corner / 3, there = e->half[e->half[0] == corner] / 3;
@@ -111,14 +123,16 @@ static void flood(orienter *o, uint32_t start)
 // The parity that is the wrong one; -1: none is.
 static int wrong_parity(const patch *p, prom_repair_orient how)
 {
-    if (how == PROM_ORIENT_NOT || p->one_sided) return -1;
-    if (!p->faces[1]) {
-        bool inside_out = how == PROM_ORIENT_BY_NORMALS && p->closed && p->volume < 0 &&
-                          p->against[0] == p->faces[0];
-        return inside_out ? 0 : -1;
+    uint32_t faces = p->faces[0] + p->faces[1];
+    if (how == PROM_ORIENT_NOT || p->one_sided || p->tangled * TANGLED > faces) return -1;
+    bool agrees = !p->faces[1];
+    if (how == PROM_ORIENT_BY_SHAPE) {
+        if (agrees) return -1;
+        return p->closed ? p->volume >= 0 : p->area[0] >= p->area[1];
     }
-    if (how == PROM_ORIENT_BY_NORMALS) return p->vouched >= 0;
-    return p->closed ? p->volume >= 0 : p->area[0] >= p->area[1];
+    if (agrees && !(p->closed && p->volume < 0)) return -1;
+    if (fabs(p->vouched) < VOUCHED * (p->area[0] + p->area[1])) return -1;
+    return p->vouched >= 0;
 }
 
 static bool is_to_turn(const orienter *o, uint32_t t, prom_repair_orient how)
