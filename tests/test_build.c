@@ -222,6 +222,31 @@ static void bad_input_leaves_nothing(void **state)
     }
 }
 
+// What was mended is part of the model, also where it was mended by an earlier build.
+static void repair_is_recorded(void **state)
+{
+    (void)state;
+    if (!have_gl()) skip();
+    write_street("repair_scene.obj", 10, -1, 0);
+    FILE *f = fopen("repair_scene.obj", "a");
+    fputs("f 73 75 76 74\nf 73 75 76 74\n", f); // a wall of the last house, thrice in all
+    fclose(f);
+    unlink("repair.prom.work");
+    prom_build_options options = {.objects = {.min_triangles = 12}, .measure = quick};
+    prom_error error = {0};
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(prom_build("repair_scene.obj", "repair.prom", &options, NULL, &error),
+                         PROM_OK);
+        prom_container *c = prom_container_open("repair.prom", &error);
+        assert_non_null(c);
+        const char *repair = prom_container_meta(c, "repair");
+        assert_non_null(repair);
+        assert_non_null(strstr(repair, "\"duplicate\": 4, \"turned\": 0, \"faces\": 120,"));
+        assert_non_null(strstr(repair, "\"patches\": 10, \"closed_patches\": 10}"));
+        prom_container_close(c);
+    }
+}
+
 int main(void)
 {
     prom_log_set_level(PROM_LOG_WARNING);
@@ -231,6 +256,7 @@ int main(void)
         cmocka_unit_test(kept_views_serve_other_metrics),
         cmocka_unit_test(tables_of_a_built_model_hold),
         cmocka_unit_test(bad_input_leaves_nothing),
+        cmocka_unit_test(repair_is_recorded),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

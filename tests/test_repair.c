@@ -177,13 +177,18 @@ static uint32_t against(const prom_mesh *mesh)
     return n;
 }
 
+static bool same_bytes(const void *a, const void *b, size_t bytes)
+{
+    return !bytes || !memcmp(a, b, bytes); // arrays of nothing may be NULL
+}
+
 static bool same_mesh(const prom_mesh *a, const prom_mesh *b)
 {
     return a->vertex_count == b->vertex_count && a->index_count == b->index_count &&
            a->submesh_count == b->submesh_count &&
-           !memcmp(a->vertices, b->vertices, a->vertex_count * sizeof *a->vertices) &&
-           !memcmp(a->indices, b->indices, a->index_count * sizeof *a->indices) &&
-           !memcmp(a->submeshes, b->submeshes, a->submesh_count * sizeof *a->submeshes);
+           same_bytes(a->vertices, b->vertices, a->vertex_count * sizeof *a->vertices) &&
+           same_bytes(a->indices, b->indices, a->index_count * sizeof *a->indices) &&
+           same_bytes(a->submeshes, b->submeshes, a->submesh_count * sizeof *a->submeshes);
 }
 
 // Repairs, and sees to what holds of every repair: the mesh is sound, and a second repair with
