@@ -4,8 +4,9 @@
 // wrong way. All of it spoils simplification (a crack is a border that must stay), and some of
 // it shows: what is drawn from one side only has a hole where a face is turned over.
 //
-// What cannot be mended without guessing is counted and left: edges of more than two faces,
-// open edges, surfaces with one side (Moebius), faces that clash with their neighbours.
+// What cannot be mended without guessing is counted and left: edges of more than two faces
+// (and the sides of patches that have many of them), open edges, surfaces with one side
+// (Moebius), faces that clash with their neighbours.
 //
 // A second repair with the same options changes nothing.
 #ifndef PROM_SIMPLIFY_REPAIR_H
