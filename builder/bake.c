@@ -1,5 +1,6 @@
 #include "builder/bake.h"
 
+#include "builder/orthographic.h"
 #include "metaobj/base/alloc.h"
 
 // One picture holds all views: the large ones in rows below the others.
@@ -53,28 +54,6 @@ void prom_baker_set_subject(prom_baker *baker, const prom_draw_item *items, size
     prom_draw_list_prepare(baker->list);
 }
 
-// Clip coordinates from a frame: x and y over the half extents, z from 0 (far) to 1 (near).
-static void orthographic(const float right[3], const float up[3], const float out[3],
-                         float half_width, float half_height, float half_depth, mat4 m)
-{
-    glm_mat4_zero(m);
-    for (int c = 0; c < 3; c++) {
-        m[c][0] = right[c] / half_width;
-        m[c][1] = up[c] / half_height;
-        m[c][2] = 0.5f * out[c] / half_depth;
-    }
-    m[3][2] = 0.5f;
-    m[3][3] = 1.0f;
-}
-
-static void frame_of_direction(const float out[3], float right[3], float up[3])
-{
-    vec3 world_up = {0.0f, 1.0f, 0.0f};
-    if (fabsf(out[1]) > 0.99f) glm_vec3_copy((vec3){0.0f, 0.0f, -1.0f}, world_up);
-    glm_vec3_crossn(world_up, (float *)out, right);
-    glm_vec3_cross((float *)out, right, up);
-}
-
 // Where a view begins, from the top left.
 static void place_of_view(uint32_t view, uint32_t *x, uint32_t *y)
 {
@@ -93,8 +72,8 @@ static void draw_view(prom_baker *baker, uint32_t view, float radius)
     prom_pass pass = {.width = side, .height = side, .output = PROM_OUTPUT_LIT};
     float out[3], right[3], up[3];
     prom_direction_of_bin(view < PROM_DIRS ? view : view - PROM_DIRS, out);
-    frame_of_direction(out, right, up);
-    orthographic(right, up, out, radius, radius, 2.0f * radius, pass.projection);
+    prom_frame_of_direction(out, right, up);
+    prom_orthographic(right, up, out, radius, radius, 2.0f * radius, pass.projection);
     place_of_view(view, &pass.x, &pass.y);
     pass.y = HEIGHT - pass.y - side; // the viewport counts from the bottom
     prom_draw_list_submit(baker->list, baker->target, &pass);
@@ -163,7 +142,8 @@ void prom_baker_take_faces(prom_baker *baker, const float half[3], prom_output o
             .height = size_px,
             .output = output,
         };
-        orthographic(right, up, out, extent[0], extent[1], extent[2] * 1.1f, pass.projection);
+        prom_orthographic(right, up, out, extent[0], extent[1], extent[2] * 1.1f,
+                          pass.projection);
         prom_draw_list_submit(baker->list, baker->target, &pass);
     }
     for (uint32_t face = 0; face < 6; face++)

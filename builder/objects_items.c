@@ -57,23 +57,6 @@ static void join(uint32_t *root, uint32_t a, uint32_t b)
         root[a] = b;
 }
 
-static void set_normal_matrix(prom_use *use, const double w[16])
-{
-    // The matrix of cofactors serves flattened matrices too, which have no inverse.
-    double c[9], largest = 0;
-    for (int i = 0; i < 3; i++)
-        for (int r = 0; r < 3; r++) {
-            const double *a = w + 4 * ((i + 1) % 3), *b = w + 4 * ((i + 2) % 3);
-            int s = (r + 1) % 3, t = (r + 2) % 3;
-            c[i * 3 + r] = a[s] * b[t] - a[t] * b[s];
-            largest = fmax(largest, fabs(c[i * 3 + r]));
-        }
-    double det = w[0] * c[0] + w[1] * c[1] + w[2] * c[2];
-    use->mirrored = det < 0;
-    double scale = largest > 0 ? (det < 0 ? -1 : 1) / largest : 0;
-    for (int k = 0; k < 9; k++) use->normal[k] = (float)(c[k] * scale);
-}
-
 static void place_vertices(prom_use *use, const prom_mesh *mesh, const double w[16])
 {
     use->world = prom_alloc(mesh->vertex_count, sizeof *use->world);
@@ -134,7 +117,7 @@ static void split_part(prom_finder *finder, uint32_t part)
         uint32_t mesh = finder->part_meshes.data[p->first_mesh + i];
         prom_use use = {.node = p->node, .mesh = mesh, .bounds = PROM_WBOX_EMPTY};
         const double *world = finder->source->nodes.data[p->node].world;
-        set_normal_matrix(&use, world);
+        use.mirrored = prom_normal_matrix(world, use.normal);
         place_vertices(&use, &finder->source->meshes.data[mesh], world);
         prom_array_push(&finder->uses, use);
         split_use(finder, (uint32_t)finder->uses.count - 1, part);

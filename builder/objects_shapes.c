@@ -92,13 +92,6 @@ static double snap(double value, double step)
     return step > 0 ? rint(value / step) * step : value;
 }
 
-static void transform_normal(const float m[9], const int8_t in[4], int8_t out[4])
-{
-    float n[3] = {in[0], in[1], in[2]}, w[3];
-    prom_basis_apply(m, n, w);
-    prom_pack_normal(w, out);
-}
-
 static void copy_vertex(const prom_finder *finder, const prom_use *use, uint32_t vertex,
                         const double center[3], double step, prom_vertex *out)
 {
@@ -106,7 +99,7 @@ static void copy_vertex(const prom_finder *finder, const prom_use *use, uint32_t
     *out = *in;
     for (int k = 0; k < 3; k++)
         out->position[k] = (float)(snap(use->world[vertex][k], step) - center[k]);
-    transform_normal(use->normal, in->normal, out->normal);
+    prom_turn_normal(use->normal, in->normal, out->normal);
 }
 
 static void fill_mesh(const prom_finder *finder, prom_span span, const double center[3],
@@ -202,7 +195,7 @@ static void append_mesh(const prom_mesh *in, uint32_t material, const float stre
         *o = in->vertices[v];
         if (!stretched) continue;
         for (int k = 0; k < 3; k++) o->position[k] *= stretch[k];
-        transform_normal(normal, in->vertices[v].normal, o->normal);
+        prom_turn_normal(normal, in->vertices[v].normal, o->normal);
     }
     for (uint32_t i = 0; i < in->index_count; i++)
         out->indices[*indices + i] = *vertices + in->indices[i];

@@ -171,3 +171,10 @@ void prom_pack_normal(const float normal[3], int8_t packed[4])
     packed[2] = (int8_t)lround(z / length * 127);
     packed[3] = 0;
 }
+
+void prom_turn_normal(const float matrix[9], const int8_t packed[4], int8_t turned[4])
+{
+    float n[3] = {packed[0], packed[1], packed[2]}, w[3];
+    prom_basis_apply(matrix, n, w);
+    prom_pack_normal(w, turned);
+}

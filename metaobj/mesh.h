@@ -57,5 +57,7 @@ void prom_box_face_axes(int face, float right[3], float up[3], float out[3]);
 
 // Encodes a normal; the zero vector becomes +y.
 void prom_pack_normal(const float normal[3], int8_t packed[4]);
+// Turns an encoded normal by a matrix of prom_normal_matrix.
+void prom_turn_normal(const float matrix[9], const int8_t packed[4], int8_t turned[4]);
 
 #endif

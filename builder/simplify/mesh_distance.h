@@ -35,8 +35,8 @@ typedef struct prom_mesh_distances {
 
 // samples: of each surface; 0: by the numbers above. Works on all cores. Positions are finite
 // and, for their floats' sake, near the origin; distances that such floats cannot tell from 0
-// are 0. A mesh without area has its means over vertices; one without triangles is INFINITY
-// away from everything.
+// are 0, others right to the precision of floats. A mesh without area has its means over
+// vertices; one without triangles is INFINITY away from everything.
 void prom_mesh_distances_measure(const prom_mesh *a, const prom_mesh *b, uint64_t samples,
                                  prom_mesh_distances *distances);
 

@@ -129,6 +129,23 @@ float prom_basis_scale(const float basis[9])
     return sqrtf(largest);
 }
 
+bool prom_normal_matrix(const double w[16], float normal[9])
+{
+    // The matrix of cofactors serves flattened matrices too, which have no inverse.
+    double c[9], largest = 0;
+    for (int i = 0; i < 3; i++)
+        for (int r = 0; r < 3; r++) {
+            const double *a = w + 4 * ((i + 1) % 3), *b = w + 4 * ((i + 2) % 3);
+            int s = (r + 1) % 3, t = (r + 2) % 3;
+            c[i * 3 + r] = a[s] * b[t] - a[t] * b[s];
+            largest = fmax(largest, fabs(c[i * 3 + r]));
+        }
+    double det = w[0] * c[0] + w[1] * c[1] + w[2] * c[2];
+    double scale = largest > 0 ? (det < 0 ? -1 : 1) / largest : 0;
+    for (int k = 0; k < 9; k++) normal[k] = (float)(c[k] * scale);
+    return det < 0;
+}
+
 bool prom_basis_invert(const float basis[9], float out[9])
 {
     double c[9];

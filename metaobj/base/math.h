@@ -49,6 +49,10 @@ float prom_basis_determinant(const float basis[9]);
 float prom_basis_scale(const float basis[9]);
 // out = inverse of basis; false when it is singular.
 bool prom_basis_invert(const float basis[9], float out[9]);
+// What turns normals where a 4x4 matrix (column-major) turns positions, up to a positive
+// factor; flattening matrices, which have no inverse, have one too. Returns whether the matrix
+// mirrors.
+bool prom_normal_matrix(const double matrix[16], float normal[9]);
 // out = a * b.
 void prom_basis_multiply(const float a[9], const float b[9], float out[9]);
 
