@@ -92,7 +92,13 @@ static void info_tells_what_was_built(void **state)
     assert_true(number(info, "triangles") > 0);
     assert_true(number(info, "file_bytes") == (double)size_of("city.prom"));
     assert_true(json_array_size(at(info, "stages")) > 0);
+    char patches[64];
+    snprintf(patches, sizeof patches, ", %.0f patches", number(info, "repair.patches"));
     json_decref(info);
+    expect("info city.prom", 0);
+    const char *repair = strstr(run.out, "\nrepair  ");
+    assert_non_null(repair);
+    assert_non_null(strstr(repair, patches));
 }
 
 static void shots_are_written(void **state)
