@@ -17,6 +17,7 @@ static const prom_command commands[] = {
     {"bench", "X.prom", "walk a path within a time per frame", prom_command_bench},
     {"calibrate", "", "measure what drawing costs here", prom_command_calibrate},
     {"compare", "A B", "tell how different two pictures look", prom_command_compare},
+    {"compare-mesh", "A B", "tell how far apart two meshes are", prom_command_compare_mesh},
     {"scene", "city|tile", "make a scene", prom_command_scene},
 };
 

@@ -25,7 +25,7 @@ typedef struct prom_look_difference {
 
 typedef struct prom_mesh_pictures prom_mesh_pictures;
 
-// Puts both on a headless device. size_px: along a side, 16 to 4096; ppd: pixels per degree,
+// Puts both on a headless device. size_px: along a side, 16 to 2048; ppd: pixels per degree,
 // for flip. The files must live as long, and have one origin. NULL with PROM_ERR_UNSUPPORTED
 // where there is no device or it has not the memory.
 prom_mesh_pictures *prom_mesh_pictures_create(const prom_mesh_file *a, const prom_mesh_file *b,

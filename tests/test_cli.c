@@ -22,9 +22,9 @@ static void expect(const char *arguments, int code)
     assert_int_equal(run.code, code);
 }
 
-static const char *const commands[] = {"build",         "info",       "shot",    "walk",
-                                       "bench",         "calibrate",  "compare", "scene city",
-                                       "scene gallery", "scene tile", NULL};
+static const char *const commands[] = {
+    "build",   "info",         "shot",       "walk",          "bench",      "calibrate",
+    "compare", "compare-mesh", "scene city", "scene gallery", "scene tile", NULL};
 
 static void help_goes_to_stdout(void **state)
 {
@@ -136,6 +136,9 @@ static const char *const wrong[][2] = {
     {"compare a.png b.png --metric all --map m.png", "one metric"},
     {"compare a.png b.png --ppd 0.5", "--ppd"},
     {"compare a.png b.png --threshold -1", "--threshold"},
+    {"compare-mesh a.obj", "second mesh"},
+    {"compare-mesh a.obj b.obj --views 0 --pictures x", "--views above 0"},
+    {"compare-mesh a.obj b.obj --samples 0", "--samples"},
     {"calibrate --effort 4", "--effort"},
     {"calibrate here", "here"},
     {"scene city", "--output"},
