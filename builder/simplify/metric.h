@@ -1,13 +1,12 @@
 // What a collapse costs. The engine knows no metric: it asks one for the cost of a candidate
-// and for the place and attributes of the vertex that it leaves behind.
+// and for the place and attributes of the vertices that it leaves behind.
 //
 // A metric keeps its own data for each point (say, a quadric) and each vertex, and combines
-// them when points are merged. Costs are squared distances, object units, so that the square
-// root of a cost is an error that a user understands; a metric that cannot promise that says
-// so.
+// them when points are merged. It says two numbers: a cost, which orders the candidates and may
+// be in any unit, and an error, a squared distance in object units, so that its square root is
+// an error that a user understands.
 //
-// Words: a *point* is a position, a *vertex* a point with attributes (a wedge of Hoppe 1996):
-// points at texture seams and creases have several vertices.
+// The points' positions and the vertices' attributes are read from the mesh.
 #ifndef PROM_SIMPLIFY_METRIC_H
 #define PROM_SIMPLIFY_METRIC_H
 
@@ -18,44 +17,53 @@
 // The attributes a metric may know, as floats: normal, uv, colour (linear, straight alpha).
 enum { PROM_ATTRIBUTES = 9 };
 
-// Weights against geometric distance; {0} stands for the defaults in brackets. Texture
-// coordinates are brought to object units first by the mean stretch of their submesh, so 1 says
-// that a texture that slides by a centimetre is as bad as a surface that moves by one.
+// Weights against geometric distance; 0 stands for the default in brackets, a negative weight
+// for none. Texture coordinates are brought to object units first by the mean stretch of their
+// group, so 1 says that a texture that slides by a centimetre is as bad as a surface that moves
+// by one.
 typedef struct prom_metric_weights {
-    float normal; // [0.5, by measurement over textured and plain models] of the local edge
+    float normal; // [0.5] of the mean edge's length: of normals that differ by one radian
     float uv;     // [1]
-    float color;  // [0.5] of the mesh's radius x 0.02
-    float border; // [10] of quadrics on open borders and seams, against the faces'
+    float color;  // [0.5] of the mesh's radius x 0.02: of black against white
+    float border; // [10] of quadrics on open borders against the faces'; of seams a tenth
 } prom_metric_weights;
 
-// One candidate: `from` moves into `to`. pairs[i] says which vertex of `from` goes over into
-// which of `to`: along the edge the vertices of one side belong together; vertices of `from`
-// without a partner keep their attributes.
+// One candidate: `from` moves into `to`. Their vertices become those of the merged point: all
+// with the same slot become one. A slot either keeps a vertex of `to` as it is or gets a new
+// one. PROM_NONE: a vertex of another group or without triangles, forgotten.
 typedef struct prom_collapse {
-    uint32_t from, to; // points
-    uint32_t pair_count;
-    const uint32_t (*pairs)[2]; // vertices {of from, of to}
-    bool free_place;            // full edge: the metric may choose the place; else it is to's
+    uint32_t from, to;        // points
+    uint32_t count;           // vertices of both
+    const uint32_t *vertices; // of `to` first
+    const uint32_t *slots;    // per vertex
+    uint32_t slot_count;
+    const uint32_t *kept; // per slot: the vertex that it keeps, PROM_NONE: none
+    bool fixed;           // the merged point is where `to` is, else the metric may choose
 } prom_collapse;
 
-// What it leaves behind.
 typedef struct prom_collapse_result {
-    float cost;                           // squared, object units; INFINITY: must not be done
-    float place[3];                       // of the merged point
-    float (*attributes)[PROM_ATTRIBUTES]; // per pair, caller's memory; unset for half edges
+    float cost;     // orders candidates; not finite: must not be done
+    float error;    // squared, object units
+    float place[3]; // of the merged point
 } prom_collapse_result;
 
 typedef struct prom_metric prom_metric;
 
 typedef struct prom_metric_class {
-    const char *name; // as users type it
+    const char *name;   // as users type it
+    bool uses_vertices; // else evaluate gets count and slot_count 0
     prom_metric *(*create)(const prom_collapse_mesh *mesh, const prom_metric_weights *weights);
     void (*destroy)(prom_metric *metric); // NULL is allowed
     void (*evaluate)(prom_metric *metric, const prom_collapse *collapse,
                      prom_collapse_result *result);
-    // The collapse was done: `point` is where both went, made[i] the vertex that pair i became.
-    void (*merge)(prom_metric *metric, const prom_collapse *collapse, uint32_t point,
-                  const uint32_t *made);
+    // The vertices of slots that keep none: made[slot] holds the place and attributes
+    // interpolated along the edge, and the metric sets those that it knows better. May be NULL.
+    void (*attributes)(prom_metric *metric, const prom_collapse *collapse, const float place[3],
+                       prom_vertex *made);
+    // The collapse is being done: vertices[slot] stands for all of the slot from now on. The
+    // mesh's position of `to` is still the old one. May be NULL.
+    void (*merge)(prom_metric *metric, const prom_collapse *collapse, const float place[3],
+                  const uint32_t *vertices);
     size_t (*bytes)(const prom_metric *metric); // of its own data, for reports
 } prom_metric_class;
 
@@ -64,5 +72,7 @@ typedef struct prom_metric_class {
 // length of the edge.
 const prom_metric_class *prom_metric_find(const char *name); // NULL if there is none
 const prom_metric_class *prom_metric_at(uint32_t index);     // NULL past the last
+
+extern const prom_metric_class prom_metric_shortest, prom_metric_qem, prom_metric_attributes;
 
 #endif

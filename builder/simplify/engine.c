@@ -1,0 +1,290 @@
+#include "builder/simplify/engine_step.h"
+
+#include "metaobj/base/clock.h"
+
+#include <math.h>
+
+// A candidate that a guard turned away comes again when the others cost twice as much, so many
+// times its own cost at the most: its surroundings have changed by then.
+#define COME_AGAIN 2.0f
+#define LAST_TIME 64.0f
+// Other places for it may cost so many times more before they wait for their turn.
+#define OTHER_PLACE 2.0f
+// After all candidates are gone they are gathered anew as long as a round removes this part.
+#define ROUND_PART 0.01f
+
+// ---- candidates
+
+static bool stale(const prom_collapser *c, const prom_candidate *e)
+{
+    const prom_collapse_mesh *mesh = c->mesh;
+    return mesh->first_corner[e->from] == PROM_NONE || mesh->first_corner[e->to] == PROM_NONE ||
+           c->stamps[e->from] + c->stamps[e->to] != e->stamp;
+}
+
+static void drop_stale(prom_collapser *c)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < c->heap.items.count; i++)
+        if (!stale(c, &c->heap.items.data[i]))
+            c->heap.items.data[kept++] = c->heap.items.data[i];
+    c->heap.items.count = kept;
+    prom_heap_restore(&c->heap);
+}
+
+// Dropping what is stale pays if much of it is.
+static void make_room(prom_collapser *c)
+{
+    const size_t capacity = c->heap.items.capacity;
+    if (c->heap.items.count < capacity) return;
+    drop_stale(c);
+    if (c->heap.items.count > capacity / 8 * 7)
+        prom_array_reserve(&c->heap.items, capacity + capacity / 4);
+}
+
+// The cheaper way to merge two points.
+static bool find_candidate(prom_collapser *c, uint32_t a, uint32_t b, prom_candidate *out)
+{
+    const bool locked[2] = {c->flags[a] & PROM_POINT_LOCKED, c->flags[b] & PROM_POINT_LOCKED};
+    bool found = false;
+    if (locked[0] && locked[1]) c->stats.rejected_lock++;
+    for (int turned = 0; turned < 2; turned++) {
+        const uint32_t from = turned ? a : b, to = turned ? b : a;
+        if (locked[!turned]) continue;
+        if (found && !c->options.half_edge) break; // the place is free: it is the same
+        prom_step step;
+        if (!prom_step_evaluate(c, from, to, false, &step)) {
+            c->left_out = true;
+            continue;
+        }
+        if (found && !(step.result.cost < out->key)) continue;
+        *out = (prom_candidate){step.result.cost, from, to, c->stamps[a] + c->stamps[b]};
+        found = true;
+    }
+    return found;
+}
+
+static void push_candidate(prom_collapser *c, uint32_t a, uint32_t b)
+{
+    prom_candidate e;
+    if (!find_candidate(c, a, b, &e)) return;
+    make_room(c);
+    prom_heap_push(&c->heap, e);
+}
+
+// Calls for every edge and virtual edge around a point, once each; only those with lower points
+// if `lower`. Returns whether the point is on an open border.
+static bool for_each_edge(prom_collapser *c, uint32_t point, bool lower,
+                          void (*each)(prom_collapser *c, uint32_t point, uint32_t other))
+{
+    const prom_collapse_mesh *mesh = c->mesh;
+    const uint32_t epoch = prom_marks_begin(&c->marks);
+    uint32_t *mark = c->marks.mark;
+    int once = 0; // edges seen once so far: with one triangle
+    mark[point] = epoch + 1;
+    for (uint32_t i = mesh->first_corner[point]; i != PROM_NONE; i = mesh->next_corner[i])
+        for (int k = 0; k < 2; k++) {
+            const uint32_t corner = k ? prom_corner_before(i) : prom_corner_after(i);
+            const uint32_t other = prom_corner_point(mesh, corner);
+            if (mark[other] < epoch) {
+                mark[other] = epoch;
+                once++;
+                if (each && (!lower || other < point)) each(c, point, other);
+            } else if (mark[other] == epoch) {
+                mark[other] = epoch + 1;
+                once--;
+            }
+        }
+    if (!each || !prom_pairs_any(&c->pairs)) return once > 0;
+    for (uint32_t i = c->pairs.first[point]; i != PROM_NONE; i = c->pairs.links.data[i].next) {
+        const uint32_t other = prom_pairs_find(&c->pairs, c->pairs.links.data[i].other);
+        if (mark[other] >= epoch || mesh->first_corner[other] == PROM_NONE) continue;
+        mark[other] = epoch;
+        if (!lower || other < point) each(c, point, other);
+    }
+    return once > 0;
+}
+
+// Put in unordered; the heap is restored at the end.
+static void append_candidate(prom_collapser *c, uint32_t a, uint32_t b)
+{
+    prom_candidate e;
+    if (find_candidate(c, a, b, &e)) prom_array_push(&c->heap.items, e);
+}
+
+static void gather_candidates(prom_collapser *c)
+{
+    c->heap.items.count = 0;
+    c->left_out = false;
+    prom_array_reserve(&c->heap.items, c->mesh->triangles + c->mesh->triangles / 2 + 16);
+    for (uint32_t p = 0; p < c->mesh->points; p++)
+        if (c->mesh->first_corner[p] != PROM_NONE) for_each_edge(c, p, true, append_candidate);
+    prom_heap_restore(&c->heap);
+}
+
+// ---- beginning and end
+
+static bool has_vertices(const prom_collapse_mesh *mesh, uint32_t point)
+{
+    const uint32_t first = mesh->first_corner[point];
+    for (uint32_t i = first; i != PROM_NONE; i = mesh->next_corner[i])
+        if (mesh->corners[i] != mesh->corners[first]) return true;
+    return false;
+}
+
+static void find_flags(prom_collapser *c, const uint8_t *locked)
+{
+    const prom_collapse_mesh *mesh = c->mesh;
+    for (uint32_t p = 0; p < mesh->points; p++) {
+        if (mesh->first_corner[p] == PROM_NONE) continue;
+        if (for_each_edge(c, p, false, NULL)) c->flags[p] |= PROM_POINT_BORDER;
+        if (has_vertices(mesh, p)) c->flags[p] |= PROM_POINT_MULTIPLE;
+        if (c->options.lock_border && (c->flags[p] & PROM_POINT_BORDER))
+            c->flags[p] |= PROM_POINT_LOCKED;
+    }
+    for (uint32_t i = 0; i < mesh->base_vertices && locked; i++)
+        if (locked[i]) c->flags[mesh->point.data[i]] |= PROM_POINT_LOCKED;
+}
+
+static size_t bytes_now(const prom_collapser *c)
+{
+    const size_t per_point = sizeof *c->stamps + sizeof *c->flags + sizeof *c->marks.mark;
+    return prom_collapse_mesh_bytes(c->mesh) + c->options.metric->bytes(c->metric) +
+           c->heap.items.capacity * sizeof *c->heap.items.data +
+           prom_pairs_bytes(&c->pairs, c->mesh) + c->mesh->points * per_point;
+}
+
+static void note_bytes(prom_collapser *c)
+{
+    const size_t bytes = bytes_now(c);
+    if (bytes > c->stats.peak_bytes) c->stats.peak_bytes = bytes;
+}
+
+prom_collapser *prom_collapser_create(prom_collapse_mesh *mesh,
+                                      const prom_collapse_options *options)
+{
+    const double start = prom_clock_ms();
+    prom_collapser *c = prom_calloc(1, sizeof *c);
+    c->mesh = mesh;
+    c->options = *options;
+    c->options.locked = NULL;
+    if (!c->options.metric) c->options.metric = prom_metric_at(0);
+    c->stamps = prom_calloc(mesh->points, sizeof *c->stamps);
+    c->flags = prom_calloc(mesh->points, sizeof *c->flags);
+    prom_marks_init(&c->marks, mesh->points);
+    c->metric = c->options.metric->create(mesh, &c->options.weights);
+    prom_pairs_init(&c->pairs, mesh, options->pair_distance);
+    find_flags(c, options->locked);
+    gather_candidates(c);
+    note_bytes(c);
+    c->stats.init_ms = prom_clock_ms() - start;
+    return c;
+}
+
+void prom_collapser_destroy(prom_collapser *c)
+{
+    if (!c) return;
+    c->options.metric->destroy(c->metric);
+    prom_array_finish(&c->heap.items);
+    prom_pairs_finish(&c->pairs);
+    prom_marks_finish(&c->marks);
+    prom_slots_finish(&c->slots);
+    prom_array_finish(&c->made);
+    prom_array_finish(&c->survivors);
+    prom_free(c->stamps);
+    prom_free(c->flags);
+    prom_free(c);
+}
+
+void prom_collapser_stats(const prom_collapser *c, prom_collapse_stats *stats)
+{
+    *stats = c->stats;
+    stats->triangles = c->mesh->triangles;
+}
+
+// ---- running
+
+static void count_rejected(prom_collapser *c, prom_verdict verdict)
+{
+    c->stats.rejected_link += verdict == PROM_VERDICT_LINK;
+    c->stats.rejected_flip += verdict == PROM_VERDICT_FLIP;
+    c->stats.rejected_degenerate += verdict == PROM_VERDICT_DEGENERATE;
+}
+
+// After a collapse: candidates around the merged point are made anew.
+static void renew(prom_collapser *c, uint32_t point)
+{
+    c->flags[point] &= (uint8_t)~PROM_POINT_BORDER;
+    if (for_each_edge(c, point, false, NULL)) c->flags[point] |= PROM_POINT_BORDER;
+    for_each_edge(c, point, false, push_candidate);
+}
+
+typedef enum outcome { DONE, TOO_MUCH, REFUSED, AGAINST_LINK } outcome;
+
+// Does a step if it may be done for so much.
+static outcome attempt(prom_collapser *c, uint32_t from, uint32_t to, bool fixed,
+                       float most_cost, float limit)
+{
+    prom_step step;
+    if (c->flags[from] & PROM_POINT_LOCKED) return REFUSED;
+    if (!prom_step_evaluate(c, from, to, fixed, &step) || step.result.cost > most_cost)
+        return REFUSED;
+    if (step.result.error > limit) return TOO_MUCH;
+    const prom_verdict verdict = prom_step_judge(c, &step);
+    count_rejected(c, verdict);
+    if (verdict) return verdict == PROM_VERDICT_LINK ? AGAINST_LINK : REFUSED;
+    prom_step_apply(c, &step);
+    renew(c, to);
+    return DONE;
+}
+
+// Where a face would flip, other places may do.
+static outcome attempt_all(prom_collapser *c, const prom_candidate *e, float limit)
+{
+    outcome result = attempt(c, e->from, e->to, false, INFINITY, limit);
+    if (result != REFUSED) return result;
+    const float most = OTHER_PLACE * e->key;
+    if (!c->options.half_edge) {
+        result = attempt(c, e->from, e->to, true, most, limit);
+        if (result != REFUSED) return result;
+    }
+    return attempt(c, e->to, e->from, true, most, limit);
+}
+
+static void come_again(prom_collapser *c, prom_candidate e)
+{
+    prom_step step;
+    c->left_out = true;
+    if (!prom_step_evaluate(c, e.from, e.to, false, &step)) return;
+    e.key *= COME_AGAIN;
+    if (e.key > 0 && e.key <= LAST_TIME * step.result.cost) prom_heap_push(&c->heap, e);
+}
+
+// Until the target is reached or no candidate is left.
+static void run_round(prom_collapser *c, uint32_t target, float limit)
+{
+    while (c->mesh->triangles > target && c->heap.items.count) {
+        const prom_candidate e = prom_heap_pop(&c->heap);
+        if (stale(c, &e)) continue;
+        const outcome result = attempt_all(c, &e, limit);
+        if (result == TOO_MUCH) c->left_out = true;
+        if (result == REFUSED || result == AGAINST_LINK) come_again(c, e);
+    }
+}
+
+float prom_collapser_run(prom_collapser *c, uint32_t target_triangles, float max_error)
+{
+    const double start = prom_clock_ms();
+    const float limit = max_error * max_error;
+    uint32_t before = UINT32_MAX;
+    run_round(c, target_triangles, limit);
+    while (c->mesh->triangles > target_triangles && c->left_out &&
+           (float)(before - c->mesh->triangles) > ROUND_PART * (float)c->mesh->triangles) {
+        before = c->mesh->triangles;
+        gather_candidates(c);
+        run_round(c, target_triangles, limit);
+    }
+    note_bytes(c);
+    c->stats.run_ms += prom_clock_ms() - start;
+    return sqrtf(c->greatest_error);
+}

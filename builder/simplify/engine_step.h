@@ -1,0 +1,47 @@
+// Private to simplification: what the engine's parts share, and doing one collapse.
+#ifndef PROM_SIMPLIFY_ENGINE_STEP_H
+#define PROM_SIMPLIFY_ENGINE_STEP_H
+
+#include "builder/simplify/engine.h"
+#include "builder/simplify/guard.h"
+#include "builder/simplify/heap.h"
+#include "builder/simplify/pairs.h"
+#include "builder/simplify/slots.h"
+
+enum {
+    PROM_POINT_LOCKED = 1,
+    PROM_POINT_BORDER = 2,
+    PROM_POINT_MULTIPLE = 4, // may have more than one vertex
+};
+
+struct prom_collapser {
+    prom_collapse_mesh *mesh;
+    prom_collapse_options options;
+    prom_metric *metric;
+    prom_heap heap;
+    prom_pairs pairs;
+    prom_marks marks;
+    prom_slots slots;
+    uint32_t *stamps; // per point: how often it was merged
+    uint8_t *flags;   // per point
+    PROM_ARRAY(prom_vertex) made;
+    PROM_ARRAY(uint32_t) survivors; // per slot
+    float greatest_error;           // squared
+    bool left_out;                  // candidates were dropped that may be possible later
+    prom_collapse_stats stats;
+};
+
+// One candidate with all that was found out about it.
+typedef struct prom_step {
+    prom_collapse collapse;
+    prom_collapse_result result;
+} prom_step;
+
+// What merging would cost; false: it cannot be done. The step is good until the next call.
+bool prom_step_evaluate(prom_collapser *c, uint32_t from, uint32_t to, bool fixed,
+                        prom_step *step);
+prom_verdict prom_step_judge(prom_collapser *c, const prom_step *step);
+// Does it, without looking for candidates.
+void prom_step_apply(prom_collapser *c, const prom_step *step);
+
+#endif

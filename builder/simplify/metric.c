@@ -1,0 +1,64 @@
+#include "builder/simplify/metric.h"
+
+static const prom_metric_class *const classes[] = {&prom_metric_attributes, &prom_metric_qem,
+                                                   &prom_metric_shortest};
+
+const prom_metric_class *prom_metric_at(uint32_t index)
+{
+    return index < sizeof classes / sizeof *classes ? classes[index] : NULL;
+}
+
+const prom_metric_class *prom_metric_find(const char *name)
+{
+    const prom_metric_class *c = NULL;
+    for (uint32_t i = 0; (c = prom_metric_at(i)); i++)
+        if (!strcmp(c->name, name)) return c;
+    return NULL;
+}
+
+// ---- shortest: no data but the mesh
+
+struct prom_metric {
+    const prom_collapse_mesh *mesh;
+};
+
+static prom_metric *create(const prom_collapse_mesh *mesh, const prom_metric_weights *weights)
+{
+    (void)weights;
+    prom_metric *metric = prom_alloc(1, sizeof *metric);
+    metric->mesh = mesh;
+    return metric;
+}
+
+static void destroy(prom_metric *metric)
+{
+    prom_free(metric);
+}
+
+static void evaluate(prom_metric *metric, const prom_collapse *collapse,
+                     prom_collapse_result *result)
+{
+    const float *a = metric->mesh->position[collapse->from];
+    const float *b = metric->mesh->position[collapse->to];
+    result->cost = result->error = 0;
+    for (int k = 0; k < 3; k++) {
+        const float d = b[k] - a[k];
+        result->cost += d * d;
+        result->place[k] = collapse->fixed ? b[k] : a[k] + 0.5f * d;
+    }
+    // No point moves by more than the edge.
+    result->error = collapse->fixed ? result->cost : result->cost / 4;
+}
+
+static size_t bytes(const prom_metric *metric)
+{
+    return sizeof *metric;
+}
+
+const prom_metric_class prom_metric_shortest = {
+    .name = "shortest",
+    .create = create,
+    .destroy = destroy,
+    .evaluate = evaluate,
+    .bytes = bytes,
+};
