@@ -109,7 +109,7 @@ void prom_mesh_comparison_print(const prom_mesh_comparison *c)
     print_facts('A', &c->facts[0]);
     print_facts('B', &c->facts[1]);
     double percent = prom_volume_difference_percent(c);
-    if (isfinite(percent)) printf("B has %+.4f %% of A's volume more\n", percent);
+    if (isfinite(percent)) printf("volume of B against A: %+.4f %%\n", percent);
     print_distances(c);
     if (c->view_count) print_looks(c);
 }
