@@ -168,7 +168,7 @@ prom_collapser *prom_collapser_create(prom_collapse_mesh *mesh,
     c->mesh = mesh;
     c->options = *options;
     c->options.locked = NULL;
-    if (!c->options.metric) c->options.metric = prom_metric_at(0);
+    if (!c->options.metric) c->options.metric = prom_collapse_metric_at(0);
     c->stamps = prom_calloc(mesh->points, sizeof *c->stamps);
     c->flags = prom_calloc(mesh->points, sizeof *c->flags);
     prom_marks_init(&c->marks, mesh->points);

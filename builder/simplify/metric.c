@@ -3,7 +3,7 @@
 static const prom_metric_class *const classes[] = {&prom_metric_attributes, &prom_metric_qem,
                                                    &prom_metric_shortest};
 
-const prom_metric_class *prom_metric_at(uint32_t index)
+const prom_metric_class *prom_collapse_metric_at(uint32_t index)
 {
     return index < sizeof classes / sizeof *classes ? classes[index] : NULL;
 }
@@ -11,7 +11,7 @@ const prom_metric_class *prom_metric_at(uint32_t index)
 const prom_metric_class *prom_metric_find(const char *name)
 {
     const prom_metric_class *c = NULL;
-    for (uint32_t i = 0; (c = prom_metric_at(i)); i++)
+    for (uint32_t i = 0; (c = prom_collapse_metric_at(i)); i++)
         if (!strcmp(c->name, name)) return c;
     return NULL;
 }

@@ -70,8 +70,8 @@ typedef struct prom_metric_class {
 // "qem": Garland and Heckbert 1997, area weighted. "qem-attributes": Hoppe 1999, "New quadric
 // metric for simplifying meshes with appearance attributes", the default. "shortest": the
 // length of the edge.
-const prom_metric_class *prom_metric_find(const char *name); // NULL if there is none
-const prom_metric_class *prom_metric_at(uint32_t index);     // NULL past the last
+const prom_metric_class *prom_metric_find(const char *name);      // NULL if there is none
+const prom_metric_class *prom_collapse_metric_at(uint32_t index); // NULL past the last
 
 extern const prom_metric_class prom_metric_shortest, prom_metric_qem, prom_metric_attributes;
 
