@@ -12,6 +12,7 @@
 #define SMALL_HEIGHT (ROWS * PROM_VIEW_PX)
 #define HEIGHT (SMALL_HEIGHT + LARGE_ROWS * PROM_VIEW_LARGE_PX)
 _Static_assert(COLUMNS >= 6, "the six faces stand in a row");
+_Static_assert(PROM_PATCHES_PX <= WIDTH && PROM_PATCHES_PX <= HEIGHT, "patches have room");
 
 struct prom_baker {
     prom_target *target;
@@ -149,4 +150,33 @@ void prom_baker_take_faces(prom_baker *baker, const float half[3], prom_output o
     for (uint32_t face = 0; face < 6; face++)
         prom_target_read_rgba(baker->target, face * PROM_VIEW_PX, 0, size_px, size_px,
                               rgba + (size_t)face * size_px * size_px * 4);
+}
+
+void prom_baker_begin_patches(prom_baker *baker)
+{
+    prom_target_clear(baker->target, nothing);
+}
+
+void prom_baker_draw_patch(prom_baker *baker, const prom_patch *patch)
+{
+    prom_pass pass = {.x = patch->x,
+                      .y = HEIGHT - patch->y - patch->height,
+                      .width = patch->width,
+                      .height = patch->height,
+                      .output = PROM_OUTPUT_LIT};
+    const float *axes[3] = {patch->right, patch->up, patch->out};
+    float half_depth = (patch->front - patch->back) / 2, center[3];
+    glm_vec3_copy((float *)patch->center, center);
+    glm_vec3_muladds((float *)patch->out, (patch->front + patch->back) / 2, center);
+    mat4 *m = &pass.projection;
+    prom_orthographic(patch->right, patch->up, patch->out, patch->half_width,
+                      patch->half_height, half_depth, *m);
+    const float half[3] = {patch->half_width, patch->half_height, 2 * half_depth};
+    for (int r = 0; r < 3; r++) (*m)[3][r] -= glm_vec3_dot((float *)axes[r], center) / half[r];
+    prom_draw_list_submit(baker->list, baker->target, &pass);
+}
+
+void prom_baker_read_patches(prom_baker *baker, uint32_t size_px, uint8_t *rgba)
+{
+    prom_target_read_rgba(baker->target, 0, HEIGHT - size_px, size_px, size_px, rgba);
 }

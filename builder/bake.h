@@ -35,4 +35,22 @@ void prom_baker_take_views(prom_baker *baker, float radius, bool large, prom_vie
 void prom_baker_take_faces(prom_baker *baker, const float half[3], prom_output output,
                            uint32_t size_px, uint8_t *rgba);
 
+// A stretch of the subject seen straight on, to a rectangle of a picture of several.
+typedef struct prom_patch {
+    float right[3], up[3], out[3]; // orthonormal: to the right, up, to the viewer
+    float center[3];               // of the rectangle, relative to the subject's
+    float half_width, half_height; // along right and up
+    float front, back;             // along out, from the centre: nothing beyond shows
+    uint32_t x, y, width, height;  // pixels from the top left
+} prom_patch;
+
+// Side of the largest square of patches.
+#define PROM_PATCHES_PX 1024
+
+// Lit patches, beside each other: begin, set a subject and draw for each, then read the
+// square of size_px, RGBA from the top.
+void prom_baker_begin_patches(prom_baker *baker);
+void prom_baker_draw_patch(prom_baker *baker, const prom_patch *patch);
+void prom_baker_read_patches(prom_baker *baker, uint32_t size_px, uint8_t *rgba);
+
 #endif

@@ -18,6 +18,8 @@
 #define PROM_LEVEL_MIN_TRIANGLES 12u // a box has as many
 #define PROM_FACE_PX 64              // side of a stored impostor picture
 #define PROM_CLUSTER_TRIANGLES 2048u // of a cluster's fine mesh, at most
+// Side of an atlas of a cluster's mesh of each level, in texels, at most.
+#define PROM_ATLAS_PX(level) (256u >> (level))
 
 typedef struct prom_level {
     prom_mesh mesh; // empty once its representation is written
@@ -63,6 +65,7 @@ typedef struct prom_build_state {
     prom_repair_report repair;    // of all shapes
     float mean_luminance;         // of the scene, linear
     bool *boxed;                  // per prototype: gets a textured box within the byte budget
+    bool *atlased;                // per prototype: its merged meshes get atlases within it
 
     // What the model will hold. Prototypes: shapes, then clusters.
     prom_model model; // its nodes, once placed; owns nothing else
@@ -74,6 +77,7 @@ typedef struct prom_build_state {
     PROM_ARRAY(struct prom_share_row { uint16_t a[PROM_DIRS]; }) shares;
     PROM_ARRAY(prom_mesh_info) mesh_infos;
     PROM_ARRAY(prom_texture_info) texture_infos;
+    PROM_ARRAY(prom_material) atlas_materials; // follow the source's
 
     prom_writer *writer;
     prom_store *store;

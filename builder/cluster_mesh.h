@@ -1,5 +1,5 @@
 // Cluster meshes: the merged and simplified geometry of a cluster's children, one
-// vertex-coloured submesh, in the cluster's frame.
+// vertex-coloured submesh, in the cluster's frame. (subject_atlas.c may put an atlas on it.)
 #ifndef PROM_BUILDER_CLUSTER_MESH_H
 #define PROM_BUILDER_CLUSTER_MESH_H
 

@@ -341,6 +341,8 @@ static void finish_state(prom_build_state *b)
     prom_free(b->clusters);
     prom_free(b->textures);
     prom_free(b->boxed);
+    prom_free(b->atlased);
+    prom_array_finish(&b->atlas_materials);
     prom_free(b->material_keys);
     prom_free(b->prototypes);
     prom_free(b->coverage);

@@ -191,6 +191,11 @@ static void collect_truth(prom_subject *s, uint32_t node, uint32_t id, const dou
     const prom_object *object = &b->objects.objects.data[n->object];
     double origin[3];
     for (int a = 0; a < 3; a++) origin[a] = object->placement.origin[a] - center[a];
+    const prom_prototype *proto = &b->prototypes[object->shape];
+    prom_sphere sphere = {.radius = proto->radius * prom_basis_scale(object->placement.basis)};
+    prom_basis_apply(object->placement.basis, proto->center, sphere.center);
+    for (int a = 0; a < 3; a++) sphere.center[a] += (float)origin[a];
+    prom_array_push(&s->item_spheres, sphere);
     prom_array_push(&s->items, true_item(b, object, id, origin, px_per_unit));
     prom_array_push(&s->large_items, true_item(b, object, id, origin, larger * px_per_unit));
     prom_key_add_placed(&s->views_key, b->shapes[object->shape].views_key + id, origin,
@@ -242,6 +247,7 @@ static prom_status draw(prom_subject *s, uint32_t index, prom_error *error)
     prom_status status = PROM_OK;
     for (uint32_t l = 0; l < s->count && !status; l++)
         status = prom_subject_take_views(s, l, PROM_NONE, error);
+    if (!status) status = prom_subject_add_atlases(s, error);
     // The captures show the truth.
     if (!status && has_pictures(cluster) && cluster->layer == PROM_LAYER_OBJECT)
         status = prom_subject_add_boxes(s, true, error);

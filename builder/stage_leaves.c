@@ -86,7 +86,7 @@ static prom_status draw(prom_subject *s, uint32_t p, prom_error *error)
 static prom_status amend(prom_subject *s, uint32_t p, prom_error *error)
 {
     if (s->build->objects.shapes.data[p].layer != PROM_LAYER_OBJECT) return PROM_OK;
-    if (s->first_box < s->count) return PROM_OK;
+    if (s->first_made < s->count) return PROM_OK;
     uint32_t cheapest = s->count - 1;
     while (!s->candidates[cheapest].kept) cheapest--; // the object itself is
     if (as_cheap_as_a_box(s->candidates[cheapest].mesh)) return PROM_OK;
@@ -104,54 +104,67 @@ static void settled(prom_subject *s, uint32_t p)
     }
 }
 
+// Pictures of a prototype: the box's, or the atlases of a cluster's meshes.
 typedef struct candidate {
-    double value;   // triangles replaced per byte
+    double value; // triangles replaced per byte
+    double bytes;
     uint32_t index; // shapes, then clusters
+    bool atlas;
 } candidate;
 
 static int by_value(const void *a, const void *b)
 {
     const candidate *x = a, *y = b;
     if (x->value != y->value) return x->value > y->value ? -1 : 1;
+    if (x->atlas != y->atlas) return x->atlas ? 1 : -1;
     return (x->index > y->index) - (x->index < y->index);
 }
 
-// Which prototypes get textured boxes: those that replace most triangles per byte, within the
-// byte budget of the device.
-static void plan_boxes(prom_build_state *b)
+// Which prototypes get textured boxes, which clusters atlases: those that replace most
+// triangles per byte, within the byte budget of the device.
+static void plan_pictures(prom_build_state *b)
 {
-    const double face_bytes = PROM_FACE_PX * PROM_FACE_PX * 4.0 * 4.0 / 3.0; // with mips
+    const double texel_bytes = 4.0 * 4.0 / 3.0; // with mips
+    const double face_bytes = PROM_FACE_PX * PROM_FACE_PX * texel_bytes;
     const double shape_bytes = 12 * face_bytes, cluster_bytes = 6 * face_bytes;
+    double atlas_bytes = 0;
+    for (uint32_t l = 0; l < PROM_CLUSTER_LEVELS; l++)
+        atlas_bytes += texel_bytes * PROM_ATLAS_PX(l) * PROM_ATLAS_PX(l);
     PROM_ARRAY(candidate) list = {0};
     size_t shape_count = b->objects.shapes.count, cluster_count = b->tree.clusters.count;
     b->boxed = prom_calloc(shape_count + cluster_count, sizeof *b->boxed);
+    b->atlased = prom_calloc(shape_count + cluster_count, sizeof *b->atlased);
     for (size_t i = 0; i < shape_count; i++) {
         const prom_shape *s = &b->objects.shapes.data[i];
         uint32_t triangles = b->shapes[i].levels[0].mesh.index_count / 3;
         if (s->layer == PROM_LAYER_OBJECT && triangles >= BOXED_TRIANGLES)
             prom_array_push(&list, (candidate){(double)triangles * s->instances / shape_bytes,
-                                               (uint32_t)i});
+                                               shape_bytes, (uint32_t)i, false});
     }
     for (size_t i = 0; i < cluster_count; i++) {
         const prom_tree_cluster *c = &b->tree.clusters.data[i];
-        if (c->layer == PROM_LAYER_OBJECT && !c->mixed) // its own mesh is what a box replaces
-            prom_array_push(&list, (candidate){(double)PROM_CLUSTER_TRIANGLES * c->instances /
-                                                   cluster_bytes,
-                                               (uint32_t)(shape_count + i)});
+        if (c->mixed || c->layer == PROM_LAYER_BLENDED) continue;
+        double triangles = (double)PROM_CLUSTER_TRIANGLES * c->instances;
+        uint32_t index = (uint32_t)(shape_count + i);
+        if (c->layer == PROM_LAYER_OBJECT) // its own mesh is what a box replaces
+            prom_array_push(
+                &list, (candidate){triangles / cluster_bytes, cluster_bytes, index, false});
+        prom_array_push(&list, (candidate){triangles / atlas_bytes, atlas_bytes, index, true});
     }
     if (list.count) qsort(list.data, list.count, sizeof *list.data, by_value);
     double left = (b->options->texture_mb) * 1048576.0;
     size_t refused = 0;
     for (size_t i = 0; i < list.count; i++) {
-        double bytes = list.data[i].index < shape_count ? shape_bytes : cluster_bytes;
-        bool fits = bytes <= left;
-        if (fits) left -= bytes;
+        const candidate *c = &list.data[i];
+        bool fits = c->bytes <= left;
+        if (fits) left -= c->bytes;
         refused += !fits;
-        b->boxed[list.data[i].index] = fits;
+        (c->atlas ? b->atlased : b->boxed)[c->index] = fits;
     }
     if (refused)
         prom_log(PROM_LOG_INFO,
-                 "textured boxes: %zu of %zu do not fit --texture-mb; raise it to keep them",
+                 "textured boxes and atlases: %zu of %zu do not fit --texture-mb; raise it to "
+                 "keep them",
                  refused, list.count);
     prom_array_finish(&list);
 }
@@ -161,7 +174,7 @@ prom_status prom_stage_leaves(prom_build_state *b, prom_error *error)
     static const prom_subject_class leaf = {
         PROM_UNIT_LEAF, PROM_UNIT_LEAF_VIEWS, begin, draw, amend, settled};
     uint32_t count = (uint32_t)b->objects.shapes.count;
-    plan_boxes(b);
+    plan_pictures(b);
     b->measure = prom_measure_create(&b->options->measure, b->mean_luminance);
     b->pool = prom_pool_create();
     prom_progress progress;

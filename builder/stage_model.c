@@ -106,6 +106,8 @@ prom_status prom_stage_model(prom_build_state *b, prom_error *error)
     m->coverage = b->coverage;
     m->shares = (uint16_t(*)[PROM_DIRS])b->shares.data;
     m->share_count = (uint32_t)b->shares.count;
+    for (size_t i = 0; i < b->atlas_materials.count; i++)
+        prom_array_push(&b->source.materials, b->atlas_materials.data[i]);
     m->materials = b->source.materials.data;
     m->material_count = (uint32_t)b->source.materials.count;
     m->meshes = b->mesh_infos.data;

@@ -14,6 +14,10 @@
 // More than this is a speck that is hardly seen.
 #define MOST_LAYERS 64.0
 
+// By taste: so much more accurate, in the mean over its bins, a mesh with an atlas must be than
+// one without.
+#define ATLAS_GAIN 0.02f
+
 // ---- drawing
 
 prom_draw_item prom_item_around(uint32_t device_mesh, const float center[3])
@@ -33,6 +37,22 @@ prom_candidate *prom_subject_add(prom_subject *s, const prom_mesh *mesh,
     prom_views_clear(&views);
     *c = (prom_candidate){.mesh = mesh, .admission = admission, .views = views, .rep = *rep};
     return c;
+}
+
+prom_made *prom_subject_make(prom_subject *s)
+{
+    if (s->first_made > s->count) s->first_made = s->count;
+    assert(s->count - s->first_made < PROM_MADE_MAX);
+    return &s->made[s->count - s->first_made];
+}
+
+void prom_subject_unmake(prom_subject *s)
+{
+    for (int i = 0; i < PROM_MADE_MAX; i++) {
+        prom_mesh_finish(&s->made[i].mesh);
+        prom_texture_finish(&s->made[i].picture);
+    }
+    s->first_made = PROM_CANDIDATES_MAX;
 }
 
 static float radius_of(const prom_subject *s)
@@ -66,6 +86,18 @@ static void add_comparison(prom_subject *s, prom_candidate *c)
     s->comparisons[s->comparison_count++] = &c->result;
 }
 
+// On the device, behind the scene's materials, for as long as the views are taken.
+static uint32_t add_with_atlas(prom_build_state *b, const prom_candidate *c, uint32_t texture)
+{
+    prom_submesh submesh;
+    uint32_t count = (uint32_t)b->source.materials.count;
+    prom_mesh placed = prom_mesh_with_material(c->mesh, count, &submesh);
+    prom_array_push(&b->source.materials, prom_atlas_material(&c->rep, texture));
+    prom_renderer_set_materials(b->renderer, b->source.materials.data, count + 1);
+    b->source.materials.count = count;
+    return prom_renderer_add_mesh(b->renderer, &placed);
+}
+
 prom_status prom_subject_take_views(prom_subject *s, uint32_t i, uint32_t device_id,
                                     prom_error *error)
 {
@@ -73,14 +105,19 @@ prom_status prom_subject_take_views(prom_subject *s, uint32_t i, uint32_t device
     prom_candidate *c = &s->candidates[i];
     uint32_t meshes = prom_renderer_mesh_count(b->renderer);
     uint32_t textures = prom_renderer_texture_count(b->renderer);
-    if (device_id == PROM_NONE) device_id = prom_renderer_add_mesh(b->renderer, c->mesh);
+    uint32_t picture = PROM_NONE;
+    if (c->picture) {
+        picture = prom_renderer_add_texture(b->renderer, c->picture);
+        if (picture == PROM_NONE) return prom_build_device_full("textures", error);
+    }
+    if (prom_candidate_has_atlas(c))
+        device_id = add_with_atlas(b, c, picture);
+    else if (device_id == PROM_NONE)
+        device_id = prom_renderer_add_mesh(b->renderer, c->mesh);
     if (device_id == PROM_NONE) return prom_build_device_full("meshes", error);
     prom_draw_item item = prom_item_around(device_id, b->prototypes[s->prototype].center);
     item.flags = c->rep.flags;
-    if (c->pictured) {
-        item.texture = prom_renderer_add_texture(b->renderer, &s->picture);
-        if (item.texture == PROM_NONE) return prom_build_device_full("textures", error);
-    }
+    if (!prom_candidate_has_atlas(c)) item.texture = picture;
     prom_baker_set_subject(b->baker, &item, 1);
     prom_baker_take_views(b->baker, radius_of(s), is_measured_mesh(c), &c->views);
     add_comparison(s, c);
@@ -190,13 +227,15 @@ static void settle(prom_subject *s, prom_candidate *c)
 {
     prom_representation *rep = &c->rep;
     bool mesh = rep->kind == PROM_REP_MESH;
-    rep->shading = c->pictured ? PROM_SHADE_IMPOSTOR : main_shading(s->build, c->mesh);
+    if (!prom_candidate_has_atlas(c)) // which has its own
+        rep->shading = c->picture ? PROM_SHADE_IMPOSTOR : main_shading(s->build, c->mesh);
     rep->max_size_px = mesh ? INFINITY : PROM_SIZE_MAX_PX;
     rep->draws = c->mesh->submesh_count;
     rep->vertices = c->mesh->vertex_count;
     rep->triangles = c->mesh->index_count / 3;
     rep->layers = mesh ? layers_of(s, c->mesh) : 1.0f;
     c->kept = true;
+    c->outdone = false;
     if (c->admission != PROM_ADMIT_MEASURED) {
         memset(&c->result.accuracy, 255, sizeof c->result.accuracy);
         return;
@@ -213,11 +252,38 @@ static void settle(prom_subject *s, prom_candidate *c)
     c->kept = rep->max_size_px >= LEAST_SIZE_PX;
 }
 
+// What its bins promise; where it spoils its surroundings it is not shown.
+static float mean_accuracy(const prom_candidate *c)
+{
+    const prom_accuracy_row *row = &c->result.accuracy;
+    float sum = 0;
+    for (uint32_t d = 0; d < PROM_DIRS; d++)
+        for (uint32_t s = 0; s < PROM_SIZES; s++)
+            sum += fmaxf(prom_accuracy_of_byte(row->bins[d][s]), 0);
+    return sum / (PROM_DIRS * PROM_SIZES);
+}
+
+// Of a mesh and the same with an atlas one is kept.
+static void choose(prom_subject *s)
+{
+    for (uint32_t i = s->first_made; i < s->count; i++) {
+        prom_candidate *made = &s->candidates[i];
+        if (!prom_candidate_has_atlas(made) || !made->kept) continue;
+        prom_candidate *plain = &s->candidates[made->rep.level];
+        if (!plain->kept) continue;
+        bool better = mean_accuracy(made) >= mean_accuracy(plain) + ATLAS_GAIN;
+        prom_candidate *loser = better ? plain : made;
+        loser->outdone = true;
+        loser->kept = false;
+    }
+}
+
 static prom_status measure_and_settle(prom_subject *s, const prom_subject_class *class,
                                       uint32_t index, prom_error *error)
 {
     wait_for_measures(s);
     for (uint32_t i = 0; i < s->count; i++) settle(s, &s->candidates[i]);
+    choose(s);
     uint32_t settled = s->count;
     s->comparison_count = 0;
     prom_status status = class->amend ? class->amend(s, index, error) : PROM_OK;
@@ -228,60 +294,16 @@ static prom_status measure_and_settle(prom_subject *s, const prom_subject_class 
     return PROM_OK;
 }
 
-// ---- writing
-
-static prom_status write_candidate(prom_subject *s, prom_candidate *c, prom_error *error)
-{
-    prom_build_state *b = s->build;
-    if (!c->kept) {
-        b->gap_meshes++;
-        return PROM_OK;
-    }
-    prom_status status = PROM_OK;
-    if (c->pictured) status = prom_build_write_texture(b, &s->picture, &c->rep.texture, error);
-    if (!status) status = prom_writer_add_mesh(b->writer, c->mesh, &c->rep.mesh, error);
-    if (status) return status;
-    prom_array_push(
-        &b->mesh_infos,
-        (prom_mesh_info){c->mesh->vertex_count, c->mesh->index_count, c->mesh->submesh_count});
-    prom_prototype *proto = &b->prototypes[s->prototype];
-    if (proto->rep_count == 0) proto->first_rep = (uint32_t)b->reps.count;
-    proto->rep_count++;
-    prom_array_push(&b->reps, c->rep);
-    prom_array_push(&b->accuracy, c->result.accuracy);
-    return PROM_OK;
-}
-
-static prom_status write_subject(prom_subject *s, prom_error *error)
-{
-    prom_build_state *b = s->build;
-    prom_prototype *proto = &b->prototypes[s->prototype];
-    memcpy(b->coverage[s->prototype], s->coverage, sizeof s->coverage);
-    proto->first_share = PROM_NONE;
-    if (s->child_count) {
-        proto->first_share = (uint32_t)b->shares.count;
-        proto->child_count = s->child_count;
-        struct prom_share_row *rows = prom_array_extend(&b->shares, s->child_count);
-        memcpy(rows, s->shares, s->child_count * sizeof *rows);
-    }
-    prom_status status = PROM_OK;
-    for (uint32_t i = 0; i < s->count && !status; i++)
-        status = write_candidate(s, &s->candidates[i], error);
-    return status;
-}
-
 // ---- the run
 
 static void clear(prom_subject *s)
 {
-    for (int i = 0; i < PROM_BOXES; i++) prom_mesh_finish(&s->box_meshes[i]);
-    prom_texture_finish(&s->picture);
+    prom_subject_unmake(s);
     prom_free(s->shares);
     s->shares = NULL;
     s->count = s->comparison_count = s->child_count = 0;
-    s->items.count = s->large_items.count = 0;
+    s->items.count = s->large_items.count = s->item_spheres.count = 0;
     prom_views_clear(&s->truth);
-    s->first_box = PROM_CANDIDATES_MAX;
     s->loop = (prom_loop){0};
     s->known = s->views_known = false;
     memset(s->coverage, 0, sizeof s->coverage);
@@ -292,6 +314,7 @@ static void finish_slot(prom_subject *s)
     clear(s);
     prom_array_finish(&s->items);
     prom_array_finish(&s->large_items);
+    prom_array_finish(&s->item_spheres);
     prom_views_finish(&s->truth);
     for (int i = 0; i < PROM_CANDIDATES_MAX; i++) prom_views_finish(&s->candidates[i].views);
 }
@@ -355,7 +378,7 @@ static prom_status end(prom_subject *s, const prom_subject_class *class, uint32_
         status = measure_and_settle(s, class, index, error);
         if (!status) status = keep(s, class, error);
     }
-    if (!status) status = write_subject(s, error);
+    if (!status) status = prom_subject_write(s, error);
     if (!status && class->settled) class->settled(s, index);
     prom_progress_step(progress, 1);
     return status;

@@ -7,6 +7,7 @@
 #ifndef PROM_BUILDER_SUBJECT_H
 #define PROM_BUILDER_SUBJECT_H
 
+#include "builder/atlas_bake.h"
 #include "builder/build.h"
 #include "metaobj/base/log.h"
 
@@ -17,8 +18,10 @@ typedef enum prom_admission {
     PROM_ADMIT_MEASURED,   // kept if it is closed enough to be shown at some size
 } prom_admission;
 
-#define PROM_BOXES 2 // textured, average colours
-#define PROM_CANDIDATES_MAX (PROM_LEVELS_MAX + PROM_BOXES)
+// Candidates made from pictures of the truth: a cluster's meshes with atlases; the textured
+// box and that of average colours.
+#define PROM_MADE_MAX (PROM_CLUSTER_LEVELS + 2)
+#define PROM_CANDIDATES_MAX (PROM_LEVELS_MAX + PROM_MADE_MAX)
 
 typedef struct prom_candidate {
     const prom_mesh *mesh; // in the frame of the prototype
@@ -27,8 +30,15 @@ typedef struct prom_candidate {
     prom_comparison result;
     // What it becomes; kind, flags, level, error and switch_distance are set at the start.
     prom_representation rep;
-    bool kept, pictured; // pictured: rep.texture stands for the subject's picture
+    const prom_texture *picture; // of a box: rep.texture; of a mesh: its atlas; NULL: none
+    bool kept, outdone;          // outdone: good enough, but another of its level is better
 } prom_candidate;
+
+// A candidate's own mesh and picture.
+typedef struct prom_made {
+    prom_mesh mesh;
+    prom_texture picture;
+} prom_made;
 
 typedef struct prom_subject {
     prom_build_state *build;
@@ -38,15 +48,15 @@ typedef struct prom_subject {
     bool known;         // settled by an earlier build
     bool views_known;   // drawn by one
     prom_candidate candidates[PROM_CANDIDATES_MAX];
-    uint32_t count, first_box;        // boxes, if there are any, stand from first_box on
+    uint32_t count, first_made; // what is made, if anything, stands from first_made on
+    prom_made made[PROM_MADE_MAX];
     PROM_ARRAY(prom_draw_item) items; // what shows the truth, relative to the bounds' centre
     PROM_ARRAY(prom_draw_item) large_items; // and in the large views; none: the same
+    PROM_ARRAY(prom_sphere) item_spheres;   // around each of either; needed for atlases
     prom_views truth;
     uint32_t child_count; // of a cluster
     uint16_t (*shares)[PROM_DIRS];
     uint16_t coverage[PROM_DIRS];
-    prom_mesh box_meshes[PROM_BOXES];
-    prom_texture picture; // of the textured box
     prom_loop loop;
     prom_measuring measuring;
     prom_comparison *comparisons[PROM_CANDIDATES_MAX];
@@ -56,6 +66,10 @@ typedef struct prom_subject {
 // Adds a candidate; `rep` has kind, flags, level, error, switch_distance, texture PROM_NONE.
 prom_candidate *prom_subject_add(prom_subject *s, const prom_mesh *mesh,
                                  const prom_representation *rep, prom_admission admission);
+// Where the next candidate's own mesh and picture, both empty, are to stand.
+prom_made *prom_subject_make(prom_subject *s);
+// Forgets what was made; the candidates that have it go with it.
+void prom_subject_unmake(prom_subject *s);
 // Takes the truth's views, coverage and shares: of the subject's items. Large views if a mesh
 // is to be measured, which must have been added.
 void prom_subject_take_truth(prom_subject *s);
@@ -66,8 +80,22 @@ prom_status prom_subject_take_views(prom_subject *s, uint32_t i, uint32_t device
 // Average-colour box and, if the prototype is to have one, textured box of what the items show,
 // as candidates with views. lit: bake the light in (clusters).
 prom_status prom_subject_add_boxes(prom_subject *s, bool lit, prom_error *error);
+// If the prototype is to have them: the measured meshes once more, with the light and all that
+// the items show in an atlas, as candidates with views. Of the two of a level one is kept.
+prom_status prom_subject_add_atlases(prom_subject *s, prom_error *error);
 // A mesh in its prototype's frame, moved so that the views look at the bounds' centre.
 prom_draw_item prom_item_around(uint32_t device_mesh, const float center[3]);
+
+// ---- meshes with atlases (subject_atlas.c)
+
+// The picture is an atlas, not that of a box.
+bool prom_candidate_has_atlas(const prom_candidate *c);
+// What its mesh is drawn with; rep.shading says whether it is masked.
+prom_material prom_atlas_material(const prom_representation *rep, uint32_t texture);
+// A view of the mesh, whose one submesh gets a material: the mesh's own keeps PROM_NONE, since
+// the material's number is of this build only. `submesh` is where the view's stands.
+prom_mesh prom_mesh_with_material(const prom_mesh *mesh, uint32_t material,
+                                  prom_submesh *submesh);
 
 // What a kind of subjects does. Both get the number of the subject in the run.
 typedef struct prom_subject_class {
@@ -87,6 +115,9 @@ typedef struct prom_subject_class {
 prom_status prom_subjects_run(prom_build_state *b, const prom_subject_class *class,
                               const uint32_t *index_of, uint32_t count, prom_progress *progress,
                               prom_error *error);
+
+// Writes a settled subject (subject_write.c).
+prom_status prom_subject_write(prom_subject *s, prom_error *error);
 
 // ---- the store's form (subject_pack.c)
 

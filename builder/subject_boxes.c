@@ -42,8 +42,9 @@ static void make_texture(prom_texture_kind kind, const uint8_t *color, const uin
     prom_texture_finish(&big);
 }
 
-static prom_status add_box(prom_subject *s, uint32_t kind, const uint8_t (*colors)[4],
-                           const float half[3], uint32_t flags, prom_error *error)
+static prom_status add_box(prom_subject *s, prom_made *made, uint32_t kind,
+                           const uint8_t (*colors)[4], const float half[3], uint32_t flags,
+                           prom_error *error)
 {
     const prom_prototype *proto = &s->build->prototypes[s->prototype];
     prom_representation rep = {.kind = kind,
@@ -52,9 +53,9 @@ static prom_status add_box(prom_subject *s, uint32_t kind, const uint8_t (*color
                                .error = proto->radius,
                                .switch_distance = INFINITY};
     uint32_t i = s->count;
-    prom_mesh *mesh = &s->box_meshes[i - s->first_box];
-    prom_mesh_init_box(mesh, proto->center, half, colors);
-    prom_subject_add(s, mesh, &rep, PROM_ADMIT_MEASURED)->pictured = !colors;
+    prom_mesh_init_box(&made->mesh, proto->center, half, colors);
+    prom_candidate *c = prom_subject_add(s, &made->mesh, &rep, PROM_ADMIT_MEASURED);
+    if (!colors) c->picture = &made->picture;
     return prom_subject_take_views(s, i, PROM_NONE, error);
 }
 
@@ -74,18 +75,18 @@ prom_status prom_subject_add_boxes(prom_subject *s, bool lit, prom_error *error)
         normals = prom_alloc(CAPTURE_BYTES, 1);
         prom_baker_take_faces(b->baker, thick, PROM_OUTPUT_NORMAL, CAPTURE_PX, normals);
     }
-    s->first_box = s->count;
     prom_status status = PROM_OK;
     if (textured) {
+        prom_made *made = prom_subject_make(s);
         make_texture(lit ? PROM_TEXTURE_IMPOSTOR_LIT : PROM_TEXTURE_IMPOSTOR_ALBEDO, color,
-                     normals, &s->picture);
-        status = add_box(s, PROM_REP_TEXTURED_BOX, NULL, thick, flags, error);
+                     normals, &made->picture);
+        status = add_box(s, made, PROM_REP_TEXTURED_BOX, NULL, thick, flags, error);
     }
     if (!status) {
         uint8_t colors[6][4];
         average_faces(color, colors);
-        status =
-            add_box(s, PROM_REP_AVERAGE_BOX, (const uint8_t(*)[4])colors, thick, flags, error);
+        status = add_box(s, prom_subject_make(s), PROM_REP_AVERAGE_BOX,
+                         (const uint8_t(*)[4])colors, thick, flags, error);
     }
     prom_free(color);
     prom_free(normals);

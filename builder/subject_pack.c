@@ -6,7 +6,7 @@ _Static_assert(sizeof(prom_representation) == 14 * 4, "packed without padding");
 
 static void pack_candidate(const prom_candidate *c, prom_pack *pack)
 {
-    uint32_t marks[2] = {c->kept, c->pictured};
+    uint32_t marks[3] = {c->kept, c->outdone, c->picture != NULL};
     prom_representation rep = c->rep;
     rep.mesh = rep.texture = PROM_NONE; // of this build only
     prom_pack_bytes(pack, marks, sizeof marks);
@@ -16,15 +16,16 @@ static void pack_candidate(const prom_candidate *c, prom_pack *pack)
 
 void prom_subject_pack(const prom_subject *s, prom_pack *pack)
 {
-    uint32_t meshes = s->first_box < s->count ? s->first_box : s->count;
+    uint32_t meshes = s->first_made < s->count ? s->first_made : s->count;
     uint32_t counts[3] = {meshes, s->count - meshes, s->child_count};
     prom_pack_bytes(pack, counts, sizeof counts);
     prom_pack_bytes(pack, s->coverage, sizeof s->coverage);
     prom_pack_bytes(pack, s->shares, s->child_count * sizeof *s->shares);
     for (uint32_t i = 0; i < s->count; i++) {
         pack_candidate(&s->candidates[i], pack);
-        if (i >= meshes) prom_pack_mesh(pack, &s->box_meshes[i - meshes]);
-        if (s->candidates[i].pictured) prom_pack_texture(pack, &s->picture);
+        if (i < meshes) continue;
+        prom_pack_mesh(pack, s->candidates[i].mesh);
+        if (s->candidates[i].picture) prom_pack_texture(pack, s->candidates[i].picture);
     }
 }
 
@@ -34,47 +35,50 @@ static bool sound(const prom_representation *r)
            r->max_size_px > 0 && r->near_k >= 0 && r->switch_distance > 0 && r->layers >= 1;
 }
 
-static void unpack_candidate(prom_candidate *c, prom_unpack *in)
+// made: NULL for a mesh that is there already.
+static void unpack_candidate(prom_candidate *c, prom_made *made, uint32_t levels,
+                             prom_unpack *in)
 {
     c->kept = prom_unpack_u32(in, 1);
-    c->pictured = prom_unpack_u32(in, 1);
+    c->outdone = prom_unpack_u32(in, 1);
+    bool pictured = prom_unpack_u32(in, made != NULL);
     prom_unpack_bytes(in, &c->rep, sizeof c->rep);
     prom_unpack_bytes(in, &c->result.accuracy, sizeof c->result.accuracy);
     if (!in->failed && !sound(&c->rep)) in->failed = true;
+    if (made) prom_unpack_mesh(in, 0, &made->mesh);
+    if (!pictured) return;
+    prom_unpack_texture(in, &made->picture);
+    c->picture = &made->picture;
+    // An atlas belongs to the one submesh of a mesh that stands for a level.
+    if (c->rep.kind == PROM_REP_MESH &&
+        (made->mesh.submesh_count != 1 || c->rep.level >= levels))
+        in->failed = true;
 }
 
 // Takes the results from the beginning of what is left.
 static void unpack_results(prom_subject *s, prom_unpack *in)
 {
     uint32_t meshes = prom_unpack_u32(in, PROM_LEVELS_MAX);
-    uint32_t boxes = prom_unpack_u32(in, PROM_BOXES);
+    uint32_t made = prom_unpack_u32(in, PROM_MADE_MAX);
     uint32_t children = prom_unpack_u32(in, UINT32_MAX);
     const uint32_t added = s->count;
     if (meshes != added || children != s->child_count) in->failed = true;
     prom_unpack_bytes(in, s->coverage, sizeof s->coverage);
     if (!in->failed && children) prom_unpack_bytes(in, s->shares, children * sizeof *s->shares);
-    if (boxes) s->first_box = added;
-    for (uint32_t i = 0; i < meshes + boxes && !in->failed; i++) {
+    for (uint32_t i = 0; i < meshes + made && !in->failed; i++) {
         prom_representation none = {0};
-        if (i >= meshes)
-            prom_subject_add(s, &s->box_meshes[i - meshes], &none, PROM_ADMIT_MEASURED);
-        unpack_candidate(&s->candidates[i], in);
-        if (i >= meshes) prom_unpack_mesh(in, 0, &s->box_meshes[i - meshes]);
-        if (s->candidates[i].pictured && !in->failed) {
-            if (i < meshes || s->picture.pixels) in->failed = true;
-            if (!in->failed) prom_unpack_texture(in, &s->picture);
-        }
+        prom_made *own = i < meshes ? NULL : prom_subject_make(s);
+        if (own) prom_subject_add(s, &own->mesh, &none, PROM_ADMIT_MEASURED);
+        unpack_candidate(&s->candidates[i], own, meshes, in);
     }
 }
 
 // As if there had been nothing but the `added` mesh candidates.
 static void forget(prom_subject *s, uint32_t added)
 {
-    for (int i = 0; i < PROM_BOXES; i++) prom_mesh_finish(&s->box_meshes[i]);
-    prom_texture_finish(&s->picture);
+    prom_subject_unmake(s);
     prom_views_clear(&s->truth);
     s->count = added;
-    s->first_box = PROM_CANDIDATES_MAX;
 }
 
 bool prom_subject_unpack(prom_subject *s, const prom_pack *pack)

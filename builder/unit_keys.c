@@ -114,8 +114,8 @@ uint64_t prom_key_of_levels(const prom_build_state *b, uint32_t shape)
 // What every picture depends on.
 static uint64_t drawn(const prom_build_state *b, uint32_t prototype)
 {
-    uint32_t boxed = b->boxed[prototype];
-    return prom_hash(&boxed, sizeof boxed, b->device_key);
+    uint32_t pictures[2] = {b->boxed[prototype], b->atlased[prototype]};
+    return prom_hash(pictures, sizeof pictures, b->device_key);
 }
 
 uint64_t prom_key_of_leaf_views(const prom_build_state *b, uint32_t shape)
