@@ -27,7 +27,7 @@ static void find_points(prom_collapse_mesh *mesh)
     float(*places)[3] = prom_alloc(n, sizeof *places);
     for (uint32_t i = 0; i < n; i++)
         for (int k = 0; k < 3; k++) places[i][k] = mesh->vertices.data[i].position[k] + 0.0f;
-    (void)prom_array_extend(&mesh->point, n);
+    if (n) (void)prom_array_extend(&mesh->point, n);
     uint32_t *point = mesh->point.data;
     prom_first_equal(places, n, sizeof *places, point);
     prom_free(places);
@@ -124,9 +124,9 @@ void prom_collapse_mesh_init(prom_collapse_mesh *mesh, const prom_vertex *vertic
     if (!vertices || !indices) vertex_count = 0, index_count = 0;
     assert(index_count / 3 < UINT32_MAX / 3);
     mesh->base_vertices = vertex_count;
-    (void)prom_array_extend(&mesh->vertices, vertex_count);
-    (void)prom_array_extend(&mesh->group, vertex_count);
     if (vertex_count) {
+        (void)prom_array_extend(&mesh->vertices, vertex_count);
+        (void)prom_array_extend(&mesh->group, vertex_count);
         memcpy(mesh->vertices.data, vertices, vertex_count * sizeof *vertices);
         if (groups) memcpy(mesh->group.data, groups, vertex_count * sizeof *groups);
     }

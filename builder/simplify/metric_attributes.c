@@ -27,7 +27,7 @@ typedef struct side {
     float g[PROM_ATTRIBUTES][4];
 } side;
 
-struct prom_metric {
+struct prom_collapse_metric {
     prom_point_quadrics points;
     uint32_t count;                      // of attributes
     bool normals, uvs, colors;           // which there are
@@ -37,22 +37,22 @@ struct prom_metric {
     PROM_ARRAY(uint32_t) side_of_vertex; // new vertices take over an old one's
 };
 
-static size_t side_floats(const prom_metric *metric)
+static size_t side_floats(const prom_collapse_metric *metric)
 {
     return sizeof(prom_quadric) / sizeof(float) + 4 * (size_t)metric->count;
 }
 
-static float *side_at(const prom_metric *metric, uint32_t vertex)
+static float *side_at(const prom_collapse_metric *metric, uint32_t vertex)
 {
     return metric->sides + metric->side_of_vertex.data[vertex] * side_floats(metric);
 }
 
-static void load_side(const prom_metric *metric, uint32_t vertex, side *out)
+static void load_side(const prom_collapse_metric *metric, uint32_t vertex, side *out)
 {
     memcpy(out, side_at(metric, vertex), side_floats(metric) * sizeof(float));
 }
 
-static void store_side(prom_metric *metric, uint32_t vertex, const side *in)
+static void store_side(prom_collapse_metric *metric, uint32_t vertex, const side *in)
 {
     memcpy(side_at(metric, vertex), in, side_floats(metric) * sizeof(float));
 }
@@ -63,7 +63,7 @@ static float finite_or_zero(float x)
 }
 
 // A vertex's attributes in radii.
-static void attributes_of(const prom_metric *metric, uint32_t vertex, float *out)
+static void attributes_of(const prom_collapse_metric *metric, uint32_t vertex, float *out)
 {
     const prom_vertex *v = &metric->points.mesh->vertices.data[vertex];
     if (metric->normals)
@@ -105,8 +105,8 @@ static void add_side(side *sum, uint32_t count, const side *other)
 }
 
 // A slot's vertices together, about `to` and `reference`.
-static void sum_slot(const prom_metric *metric, const prom_collapse *collapse, uint32_t slot,
-                     const float *reference, side *sum)
+static void sum_slot(const prom_collapse_metric *metric, const prom_collapse *collapse,
+                     uint32_t slot, const float *reference, side *sum)
 {
     const prom_collapse_mesh *mesh = metric->points.mesh;
     float offset[3];
@@ -128,7 +128,7 @@ static void sum_slot(const prom_metric *metric, const prom_collapse *collapse, u
 }
 
 // The attributes that a slot's sums are about: those it keeps, or its first vertex's.
-static void slot_reference(const prom_metric *metric, const prom_collapse *collapse,
+static void slot_reference(const prom_collapse_metric *metric, const prom_collapse *collapse,
                            uint32_t slot, float *reference)
 {
     uint32_t vertex = collapse->kept[slot];
@@ -150,7 +150,7 @@ static void eliminate(side *s, uint32_t count)
     }
 }
 
-static void evaluate(prom_metric *metric, const prom_collapse *collapse,
+static void evaluate(prom_collapse_metric *metric, const prom_collapse *collapse,
                      prom_collapse_result *result)
 {
     prom_quadric sum = prom_point_quadrics_sum(&metric->points, collapse);
@@ -165,7 +165,7 @@ static void evaluate(prom_metric *metric, const prom_collapse *collapse,
     prom_point_quadrics_choose(&metric->points, collapse, &sum, result);
 }
 
-static void set_attributes(const prom_metric *metric, uint32_t group, const float *s,
+static void set_attributes(const prom_collapse_metric *metric, uint32_t group, const float *s,
                            prom_vertex *out)
 {
     if (metric->normals) {
@@ -184,7 +184,7 @@ static void set_attributes(const prom_metric *metric, uint32_t group, const floa
     }
 }
 
-static uint32_t slot_group(const prom_metric *metric, const prom_collapse *collapse,
+static uint32_t slot_group(const prom_collapse_metric *metric, const prom_collapse *collapse,
                            uint32_t slot)
 {
     for (uint32_t i = 0; i < collapse->count; i++)
@@ -193,7 +193,7 @@ static uint32_t slot_group(const prom_metric *metric, const prom_collapse *colla
     return 0;
 }
 
-static void best_attributes(prom_metric *metric, const prom_collapse *collapse,
+static void best_attributes(prom_collapse_metric *metric, const prom_collapse *collapse,
                             const float place[3], prom_vertex *made)
 {
     float offset[3];
@@ -212,8 +212,8 @@ static void best_attributes(prom_metric *metric, const prom_collapse *collapse,
     }
 }
 
-static void merge(prom_metric *metric, const prom_collapse *collapse, const float place[3],
-                  const uint32_t *vertices)
+static void merge(prom_collapse_metric *metric, const prom_collapse *collapse,
+                  const float place[3], const uint32_t *vertices)
 {
     float offset[3];
     prom_point_quadrics_offset(&metric->points, metric->points.mesh->position[collapse->to],
@@ -237,7 +237,7 @@ static void merge(prom_metric *metric, const prom_collapse *collapse, const floa
 // ---- the original
 
 // Which attributes say anything, and by how much.
-static void find_attributes(prom_metric *metric)
+static void find_attributes(prom_collapse_metric *metric)
 {
     const prom_collapse_mesh *mesh = metric->points.mesh;
     const uint32_t corners = 3 * mesh->triangle_slots;
@@ -269,7 +269,7 @@ static float mean_edge(const prom_collapse_mesh *mesh)
 }
 
 // Radii per unit of texture coordinates: roots of the groups' areas in both.
-static void find_stretch(prom_metric *metric, float weight)
+static void find_stretch(prom_collapse_metric *metric, float weight)
 {
     const prom_collapse_mesh *mesh = metric->points.mesh;
     uint32_t groups = 1;
@@ -314,7 +314,7 @@ static void gradient(const float e[3], const float f[3], const float normal[3], 
         glm_vec3_scale(g, STEEPEST / steepness, g);
 }
 
-static void add_face(prom_metric *metric, uint32_t triangle)
+static void add_face(prom_collapse_metric *metric, uint32_t triangle)
 {
     const prom_collapse_mesh *mesh = metric->points.mesh;
     const uint32_t *corner = mesh->corners + 3 * (size_t)triangle;
@@ -340,9 +340,10 @@ static void add_face(prom_metric *metric, uint32_t triangle)
     }
 }
 
-static prom_metric *create(const prom_collapse_mesh *mesh, const prom_metric_weights *weights)
+static prom_collapse_metric *create(const prom_collapse_mesh *mesh,
+                                    const prom_metric_weights *weights)
 {
-    prom_metric *metric = prom_calloc(1, sizeof *metric);
+    prom_collapse_metric *metric = prom_calloc(1, sizeof *metric);
     prom_point_quadrics_init(&metric->points, mesh, weights);
     find_attributes(metric);
     metric->normal_scale =
@@ -356,13 +357,13 @@ static prom_metric *create(const prom_collapse_mesh *mesh, const prom_metric_wei
 
     const uint32_t n = (uint32_t)mesh->vertices.count;
     metric->sides = prom_calloc(n, side_floats(metric) * sizeof(float));
-    (void)prom_array_extend(&metric->side_of_vertex, n);
+    if (n) (void)prom_array_extend(&metric->side_of_vertex, n);
     for (uint32_t i = 0; i < n; i++) metric->side_of_vertex.data[i] = i;
     for (uint32_t t = 0; t < mesh->triangle_slots; t++) add_face(metric, t);
     return metric;
 }
 
-static void destroy(prom_metric *metric)
+static void destroy(prom_collapse_metric *metric)
 {
     if (!metric) return;
     prom_point_quadrics_finish(&metric->points);
@@ -372,7 +373,7 @@ static void destroy(prom_metric *metric)
     prom_free(metric);
 }
 
-static size_t bytes(const prom_metric *metric)
+static size_t bytes(const prom_collapse_metric *metric)
 {
     const prom_collapse_mesh *mesh = metric->points.mesh;
     return sizeof *metric + mesh->points * sizeof(prom_quadric) +
@@ -380,7 +381,7 @@ static size_t bytes(const prom_metric *metric)
            metric->side_of_vertex.capacity * sizeof(uint32_t);
 }
 
-const prom_metric_class prom_metric_attributes = {
+const prom_collapse_metric_class prom_collapse_attributes = {
     .name = "qem-attributes",
     .uses_vertices = true,
     .create = create,
