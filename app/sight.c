@@ -73,7 +73,7 @@ static void feed(prom_sight *s, const prom_id_counts *seen)
     for (size_t i = 0; i < sighting->counts.count; i++)
         counts[i].px = visible_px(s, counts[i].entry.node, blended, seen->frame);
     for (size_t i = 0; i < seen->count; i++) s->px[seen->counts[i].id] = 0.0f;
-    prom_visibility_feed(s->visibility, counts, sighting->counts.count);
+    prom_visibility_feed(s->visibility, &sighting->camera, counts, sighting->counts.count);
 }
 
 void prom_sight_begin(prom_sight *sight, const prom_camera *camera)
@@ -100,10 +100,12 @@ static float scale_of(const prom_camera *camera, const prom_frame_options *optio
     return (float)camera->width * (float)camera->height / ((float)size[0] * (float)size[1]);
 }
 
-static void note(prom_sight *s, const prom_cut *cut, prom_ids ids, float scale)
+static void note(prom_sight *s, const prom_cut *cut, const prom_camera *camera, prom_ids ids,
+                 float scale)
 {
     prom_sighting *sighting = &s->sightings[s->counted % PROM_ID_RING];
     sighting->frame = s->counted;
+    sighting->camera = *camera;
     sighting->ids = ids;
     sighting->scale = scale;
     sighting->counts.count = 0;
@@ -133,7 +135,8 @@ static prom_ids due_ids(const prom_sight *s, const prom_cut *cut)
     return blended ? PROM_IDS_BLENDED : PROM_IDS_OPAQUE;
 }
 
-static void count(prom_sight *s, const prom_cut *cut, prom_ids ids, float scale)
+static void count(prom_sight *s, const prom_cut *cut, const prom_camera *camera, prom_ids ids,
+                  float scale)
 {
     // The ring is never full here: frames are waited for, and their counts taken.
     if (!prom_id_counter_start(s->counter, s->session->target, s->counted)) {
@@ -143,7 +146,7 @@ static void count(prom_sight *s, const prom_cut *cut, prom_ids ids, float scale)
         s->counter = NULL;
         return;
     }
-    note(s, cut, ids, scale);
+    note(s, cut, camera, ids, scale);
     double way = prom_visibility_way(s->visibility);
     if (way - s->way > JUMP_WAY)
         s->in_a_row = COUNT_ALL;
@@ -163,6 +166,6 @@ void prom_sight_draw(prom_sight *sight, const prom_cut *cut, const prom_camera *
     prom_session_submit(s, cut, camera, &with_ids);
     sight->uncounted++;
     if (with_ids.ids != PROM_IDS_NONE)
-        count(sight, cut, with_ids.ids, scale_of(camera, options));
+        count(sight, cut, camera, with_ids.ids, scale_of(camera, options));
     prom_renderer_finish(s->renderer);
 }

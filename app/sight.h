@@ -12,6 +12,7 @@
 // A frame whose pixels are being counted.
 typedef struct prom_sighting {
     uint64_t frame;
+    prom_camera camera;
     prom_ids ids;
     float scale;                           // pixels of the camera's picture for each one drawn
     PROM_ARRAY(prom_visible_count) counts; // its cut; px is filled in when they are known

@@ -24,6 +24,7 @@ typedef struct embedding {
     prom_cut cut;   // of this frame; its memory is used again and again
     bool *uploaded; // per mesh
     PROM_ARRAY(prom_visible_count) counts;
+    prom_camera counted; // that they were seen from
 } embedding;
 
 // ---- your renderer
@@ -124,7 +125,8 @@ static prom_status draw_frame(embedding *e, int frame, prom_error *error)
     prom_view view;
     prom_view_init(&view, &camera);
     // What was counted of the last frame, before this one's camera.
-    if (frame) prom_visibility_feed(e->visibility, e->counts.data, e->counts.count);
+    if (frame)
+        prom_visibility_feed(e->visibility, &e->counted, e->counts.data, e->counts.count);
     prom_visibility_begin(e->visibility, &camera);
 
     // The guarantee turns your budget into what the selector may predict.
@@ -143,6 +145,7 @@ static prom_status draw_frame(embedding *e, int frame, prom_error *error)
     prom_status status = draw_cut(e, error);
     if (status) return status;
     your_counts(e);
+    e->counted = camera;
 
     // From the start of drawing to the finished picture, by your clock. Here the device is a
     // third slower than its cost model says; after a few frames that is known.

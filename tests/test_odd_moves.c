@@ -81,7 +81,7 @@ static void feed_back(world *w, const prom_cut *cut)
         prom_array_push(&w->counts,
                         (prom_visible_count){cut->entries.data[i],
                                              0.5f * cut->entries.data[i].footprint_px});
-    prom_visibility_feed(w->visibility, w->counts.data, w->counts.count);
+    prom_visibility_feed(w->visibility, &w->b.camera, w->counts.data, w->counts.count);
     prom_guarantee_frame frame = {.draw_ms = 1.2 * cut->predicted_ms + 0.01, .other_ms = 0.2};
     memcpy(frame.terms_ms, cut->terms_ms, sizeof frame.terms_ms);
     prom_guarantee_feed(&w->guarantee, &frame);

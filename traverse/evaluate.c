@@ -50,11 +50,17 @@ void prom_eval_finish(prom_eval *eval)
 
 // ---- top down: culling, appearance, pixels, options
 
-// Share of a node's footprint that is not hidden behind others.
-static float visible_share(const prom_eval *eval, uint32_t node)
+// Whether anything is known of what shows of a node, and how many pixels.
+static bool is_known(const prom_eval *eval, uint32_t node, float *px)
 {
     const prom_visibility *visibility = eval->selection->visibility;
-    return visibility ? prom_visibility_share(visibility, node) : 1.0f;
+    return visibility && prom_visibility_px(visibility, node, eval->nodes[node].own_px, px);
+}
+
+static float known_px(const prom_eval *eval, uint32_t node, float footprint_px)
+{
+    float px;
+    return is_known(eval, node, &px) ? px : footprint_px;
 }
 
 // Culls a node and notes how it appears, with the pixels that it would have by itself; returns
@@ -85,11 +91,11 @@ static float look_at(prom_eval *eval, uint32_t node, bool parent_inside)
     n->dir = (uint8_t)a.dir;
     n->near_case = a.near_case;
     float in_view;
-    n->footprint_px = prom_footprint_in_view(view, m, node, &a, &in_view);
+    n->own_px = n->footprint_px = prom_footprint_in_view(view, m, node, &a, &in_view);
     if (eval->weighted)
         n->weight = prom_weight_in_view(&eval->selection->weighting, view, m, node);
     if (eval->selection->order == PROM_ORDER_SUM)
-        n->value_px = visible_share(eval, node) * n->footprint_px * n->weight;
+        n->value_px = known_px(eval, node, n->footprint_px) * n->weight;
     return in_view;
 }
 
@@ -150,7 +156,7 @@ static void start_flow(prom_eval *eval, uint32_t node)
     prom_eval_node *n = &eval->nodes[node];
     n->in_flow = !(n->near_case && eval->model->child_count[node]);
     if (!n->in_flow) n->footprint_px = 0.0f;
-    set_visible(eval, node, visible_share(eval, node) * n->footprint_px);
+    set_visible(eval, node, n->in_flow ? known_px(eval, node, n->footprint_px) : 0.0f);
 }
 
 // Scales the children's weights so that their pixels (eval->px) are worth together what the
@@ -179,8 +185,29 @@ static float nearness(const prom_eval_node *parent, const prom_eval_node *child)
     return fminf(fmaxf(ratio * ratio, 1.0f / MOST_NEARNESS), MOST_NEARNESS);
 }
 
-// Splits a node's footprint among its children by their baked shares, and what is visible of it
-// by what is known of them as well.
+// Splits what is visible of a node among its children: what is known of them first, the rest by
+// their footprints. (Of siblings that are known, one that is not was out of view.)
+static void split_visible(prom_eval *eval, uint32_t node)
+{
+    uint32_t first = eval->model->first_child[node], count = eval->model->child_count[node];
+    const prom_eval_node *children = &eval->nodes[first];
+    double px = (double)eval->nodes[node].px, known = 0.0, unknown = 0.0;
+    for (uint32_t c = 0; c < count; c++) {
+        if (children[c].culled) continue;
+        float *child = &eval->px[c];
+        bool sure = is_known(eval, first + c, child);
+        *(sure ? &known : &unknown) += (double)*child;
+        eval->in_view[c] = sure ? 1.0f : 0.0f;
+    }
+    double rest = unknown > 0.0 ? fmax(px - known, 0.0) : 0.0;
+    double known_factor = known > 0.0 ? (px - rest) / known : 0.0;
+    double rest_factor = unknown > 0.0 ? rest / unknown : 0.0;
+    for (uint32_t c = 0; c < count; c++)
+        eval->px[c] *= (float)(eval->in_view[c] > 0.0f ? known_factor : rest_factor);
+}
+
+// Splits a node's footprint among its children by their baked shares, and what is visible of
+// it.
 static void flow_down(prom_eval *eval, uint32_t node)
 {
     const prom_model *m = eval->model;
@@ -193,9 +220,8 @@ static void flow_down(prom_eval *eval, uint32_t node)
         if (children[c].culled) continue;
         children[c].in_flow = true;
         children[c].footprint_px = eval->px[c];
-        eval->in_view[c] *= visible_share(eval, first + c);
     }
-    prom_split_pixels(m, m->prototype[node], n->dir, n->px, eval->in_view, eval->px);
+    split_visible(eval, node);
     for (uint32_t c = 0; c < count; c++)
         if (!children[c].culled) set_visible(eval, first + c, eval->px[c]);
     if (eval->weighted) flow_weight(eval, node);

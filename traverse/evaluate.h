@@ -27,6 +27,7 @@ typedef struct prom_eval_node {
     float px;           // visible pixels
     float value_px;     // as they count where things are ordered
     float weight;       // mean of their weights
+    float own_px;       // that it would have by itself, by where it is: prom_own_px
     float footprint_px; // pixels, if nothing outside its ancestor hid it
     float distance, nearest, size_px;
     float uv[2]; // direction to the eye, see prom_appearance

@@ -7,6 +7,7 @@
 
 // Part of a screen rectangle that the outline of a box fills; between 1/2 and 1.
 #define OUTLINE_IN_RECTANGLE 0.7f
+#define LEAST_PX 1e-3f
 
 // Area of the outline of a box seen from afar along a vector of any length.
 static float outline_area(const float half[3], const float along[3])
@@ -44,15 +45,26 @@ float prom_footprint_in_view(const prom_view *view, const prom_model *model, uin
     float footprint = prom_footprint_px(model, prototype, a->dir, a->size_px);
     float px = footprint * a->in_view;
     *in_view = a->in_view;
-    if (a->nearest < PROM_EXTREME_NEAREST * a->distance || !(a->distance > 0.0f)) {
+    if (a->extreme > 0.0f) {
         float to_eye[3];
         node_to_eye(view, model, node, to_eye);
         float covered = prom_footprint_px(model, prototype, a->dir, 2.0f * model->radius[node]);
         float filled = filled_share(covered, outline_area(model->half[node], to_eye));
-        px = fmaxf(px, OUTLINE_IN_RECTANGLE * filled * a->overlap_px);
+        float seen = OUTLINE_IN_RECTANGLE * filled * a->overlap_px;
+        if (seen > px) px *= powf(seen / fmaxf(px, LEAST_PX), a->extreme);
         *in_view = px < footprint ? fmaxf(*in_view, px / footprint) : 1.0f;
     }
     return fminf(px, screen);
+}
+
+float prom_own_px(const prom_view *view, const prom_model *model, uint32_t node)
+{
+    prom_cull cull = prom_view_cull(view, model->center[node], model->half[node]);
+    if (cull == PROM_OUTSIDE) return 0.0f;
+    prom_appearance a;
+    float in_view;
+    prom_view_appearance_culled(view, model, node, cull, &a);
+    return prom_footprint_in_view(view, model, node, &a, &in_view);
 }
 
 float prom_box_px(const prom_view *view, const prom_model *model, uint32_t node, uint32_t dir,

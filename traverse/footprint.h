@@ -9,6 +9,8 @@
 // extreme and the screen rectangle says little.
 float prom_footprint_in_view(const prom_view *view, const prom_model *model, uint32_t node,
                              const prom_appearance *appearance, float *in_view);
+// The same of a node that nothing is known of yet: 0 where it is out of view.
+float prom_own_px(const prom_view *view, const prom_model *model, uint32_t node);
 // Pixels that the box around a node covers where the node itself covers `px` of them: a box is
 // shaded all over.
 float prom_box_px(const prom_view *view, const prom_model *model, uint32_t node, uint32_t dir,

@@ -10,6 +10,9 @@
 #define CULL_SLACK 1e-5f
 // No visible node counts for less of itself than this.
 #define IN_VIEW_MIN 1e-3f
+// A corner with less depth than this part of the distance: its place in the picture runs away.
+#define EXTREME_DEPTH 0.25f
+#define EXTREME_FADE 0.2f // sizes must not jump as the eye passes
 
 static void rotation_of(const float q[4], float r[9])
 {
@@ -116,6 +119,13 @@ static void box_corners(const prom_view *view, const float center[3], const floa
     }
 }
 
+// 1 where `near` is at most this part of the distance, 0 from a little more on.
+static float extremity(float near, float distance, float part)
+{
+    if (!(distance > 0.0f)) return 1.0f;
+    return fminf(fmaxf((part - near / distance) / EXTREME_FADE + 1.0f, 0.0f), 1.0f);
+}
+
 static void look_at_rectangle(const prom_view *view, const float center[3], const float half[3],
                               prom_appearance *appearance)
 {
@@ -123,6 +133,10 @@ static void look_at_rectangle(const prom_view *view, const float center[3], cons
     float half_h = 0.5f * (float)view->camera.height / view->f_px;
     float corners[8][3];
     box_corners(view, center, half, corners);
+    float depth = INFINITY;
+    for (int i = 0; i < 8; i++) depth = fminf(depth, -corners[i][2]);
+    appearance->extreme =
+        fmaxf(appearance->extreme, extremity(depth, appearance->distance, EXTREME_DEPTH));
     rectangle r = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
     for (int i = 0; i < 8; i++)
         for (int axis = 0; axis < 3; axis++)
@@ -182,8 +196,9 @@ void prom_view_appearance_culled(const prom_view *view, const prom_model *model,
     place_direction(model, node, center, appearance);
     appearance->in_view = 1.0f;
     appearance->overlap_px = prom_view_screen_px(view);
-    if (cull != PROM_INSIDE ||
-        appearance->nearest < PROM_EXTREME_NEAREST * appearance->distance)
+    appearance->extreme =
+        extremity(appearance->nearest, appearance->distance, PROM_EXTREME_NEAREST);
+    if (cull != PROM_INSIDE || appearance->extreme > 0.0f)
         look_at_rectangle(view, center, half, appearance);
 }
 

@@ -30,6 +30,8 @@ typedef struct prom_appearance {
     float overlap_px; // pixels of the viewport that its screen rectangle covers
     float uv[2];      // direction to the eye in the node's own frame, on the octahedral map
     uint32_t dir;     // its direction bin
+    float extreme;    // how little its centre and the share of its rectangle say of what it
+                      // covers, for being near: from 0 to 1
     bool near_case;   // holds the eye or crosses the near plane: only meshes, clusters open
 } prom_appearance;
 void prom_view_appearance(const prom_view *view, const prom_model *model, uint32_t node,

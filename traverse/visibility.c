@@ -1,6 +1,7 @@
 #include "traverse/visibility.h"
 
 #include "benefit/accuracy.h"
+#include "traverse/footprint.h"
 #include "traverse/view_private.h"
 
 #include <math.h>
@@ -19,12 +20,16 @@
 // samples of a narrow view of something large come and go.
 #define FALL 0.5f
 #define FALL_TO_NOTHING 0.75f
+// What was partly outside the view and has grown by more than this factor has come into it as
+// far as it is more: of that nothing is known yet.
+#define GROWTH 1.1f
 // A footprint of fewer pixels says nothing.
 #define LEAST_PX 1e-3f
 
 typedef struct node_state {
     double moved, turned; // the odometers when it was counted last
     float share;          // as counted then
+    float own_px;         // and what it would have had by itself
     float prior;          // by the cell
     uint32_t cell;        // the number of the cell's visit for which that holds
     bool counted;         // moved, turned, share, whole are valid
@@ -34,7 +39,8 @@ typedef struct node_state {
 // Sums over the entries below a node; valid for one feed.
 typedef struct node_sum {
     float px, footprint_px;
-    float counted_px; // of the footprint
+    float counted_px;  // of the footprint
+    float expected_px; // to be visible, when the cut was chosen
     uint32_t feed;
 } node_sum;
 
@@ -87,6 +93,7 @@ static void add_upwards(prom_visibility *v, uint32_t node, node_sum more)
         s->px += more.px;
         s->footprint_px += more.footprint_px;
         s->counted_px += more.counted_px;
+        s->expected_px += more.expected_px;
     }
 }
 
@@ -208,15 +215,28 @@ double prom_visibility_way(const prom_visibility *visibility)
     return visibility->moved + visibility->turned;
 }
 
+bool prom_visibility_px(const prom_visibility *visibility, uint32_t node, float own_px,
+                        float *px)
+{
+    const node_state *n = &visibility->nodes[node];
+    if (!n->counted && !visibility->cell) return false;
+    float come = n->counted && !n->whole ? fmaxf(own_px - GROWTH * n->own_px, 0.0f) : 0.0f;
+    float share = prom_visibility_share(visibility, node);
+    *px = share * (own_px - come) + fmaxf(share, prior_of(visibility, node)) * come;
+    return true;
+}
+
 // Of a node most of whose footprint has been counted.
-static void settle(prom_visibility *v, uint32_t node)
+static void settle(prom_visibility *v, uint32_t node, const prom_view *view)
 {
     const node_sum *sum = &v->sums[node];
     node_state *n = &v->nodes[node];
     if (!(sum->footprint_px > LEAST_PX) || sum->counted_px < 0.5f * sum->footprint_px) return;
-    float now = clamp_share(sum->px / sum->footprint_px);
-    float before = n->counted ? n->share : prior_of(v, node);
-    float sure = fminf(fmaxf(sum->footprint_px, sum->px) / SURE_PX, 1.0f);
+    float own_px = prom_own_px(view, v->model, node);
+    if (!(own_px > LEAST_PX)) return;
+    float now = clamp_share(sum->px / own_px);
+    float before = n->counted ? n->share : clamp_share(sum->expected_px / own_px);
+    float sure = fminf(fmaxf(own_px, sum->px) / SURE_PX, 1.0f);
     if (now < before) {
         float most = !n->counted ? 1.0f : sum->px > 0.0f ? FALL : FALL_TO_NOTHING;
         now = before + fminf(sure, most) * (now - before);
@@ -228,6 +248,7 @@ static void settle(prom_visibility *v, uint32_t node)
     *n = (node_state){.moved = v->moved,
                       .turned = v->turned,
                       .share = now,
+                      .own_px = own_px,
                       .prior = n->prior,
                       .cell = n->cell,
                       .counted = true};
@@ -247,22 +268,24 @@ static float sight_of(const prom_visibility *v, const prom_visible_count *counts
     return weight > 0.0 ? (float)(sum / weight) : 0.0f;
 }
 
-void prom_visibility_feed(prom_visibility *visibility, const prom_visible_count *counts,
-                          size_t count)
+void prom_visibility_feed(prom_visibility *visibility, const prom_camera *camera,
+                          const prom_visible_count *counts, size_t count)
 {
     prom_visibility *v = visibility;
+    prom_view view;
+    prom_view_init(&view, camera);
     begin_sums(v);
     for (size_t i = 0; i < count; i++) {
         const prom_cut_entry *e = &counts[i].entry;
         bool counted = counts[i].px >= 0.0f;
-        float known = prom_visibility_share(v, e->node) * e->footprint_px;
         add_upwards(v, e->node,
-                    (node_sum){.px = counted ? counts[i].px : known,
+                    (node_sum){.px = counted ? counts[i].px : e->visible_px,
                                .footprint_px = e->footprint_px,
-                               .counted_px = counted ? e->footprint_px : 0.0f});
+                               .counted_px = counted ? e->footprint_px : 0.0f,
+                               .expected_px = e->visible_px});
     }
     // What is above the entries is partly outside as a rule.
-    for (uint32_t i = 0; i < v->touched_count; i++) settle(v, v->touched[i]);
+    for (uint32_t i = 0; i < v->touched_count; i++) settle(v, v->touched[i], &view);
     for (size_t i = 0; i < count; i++)
         if (counts[i].px >= 0.0f) v->nodes[counts[i].entry.node].whole = counts[i].entry.whole;
     float sight = sight_of(v, counts, count);

@@ -17,7 +17,7 @@
 // No share is smaller: of a full screen less than a pixel.
 #define PROM_VISIBILITY_LEAST (1.0f / (1 << 20))
 // Nor larger. Footprints are estimates: of some nodes more shows than they promise.
-#define PROM_VISIBILITY_MOST 64.0f
+#define PROM_VISIBILITY_MOST ((float)(1 << 20))
 
 typedef struct prom_visibility prom_visibility;
 
@@ -35,14 +35,18 @@ typedef struct prom_visible_count {
     prom_cut_entry entry; // as the selector gave it
     float px;             // visible pixels; below 0: they were not counted
 } prom_visible_count;
-// The counts of a whole cut. Nodes above the entries get the sums; nodes below keep what they
-// had, and share in their ancestor's pixels.
-void prom_visibility_feed(prom_visibility *visibility, const prom_visible_count *counts,
-                          size_t count);
+// The counts of a whole cut, drawn from this camera. Nodes above the entries get the sums;
+// nodes below keep what they had, and share in their ancestor's pixels.
+void prom_visibility_feed(prom_visibility *visibility, const prom_camera *camera,
+                          const prom_visible_count *counts, size_t count);
 
-// Visible pixels of a node against those of its footprint as the selectors estimate it, in
-// [PROM_VISIBILITY_LEAST, PROM_VISIBILITY_MOST]; 1 where nothing is known.
+// Visible pixels of a node against prom_own_px of it, in [PROM_VISIBILITY_LEAST,
+// PROM_VISIBILITY_MOST]; 1 where nothing is known.
 float prom_visibility_share(const prom_visibility *visibility, uint32_t node);
+// Visible pixels of a node that would have own_px by itself, as far as is known; false where
+// nothing is.
+bool prom_visibility_px(const prom_visibility *visibility, uint32_t node, float own_px,
+                        float *px);
 // How far the camera has come so far: moved, in units of the distance to what it sees, and
 // turned, in units of its angle of view.
 double prom_visibility_way(const prom_visibility *visibility);
