@@ -130,7 +130,7 @@ static uint8_t mean_of(const uint8_t *rgba, const uint8_t *inside, size_t side, 
         }
     for (int c = 0; c < 3 && shown; c++) out[c] = prom_linear_to_srgb8(sum[c] / (float)shown);
     out[3] = shown ? 255 : 0;
-    return faces ? (uint8_t)(covered * COVERED / faces) : UNKNOWN;
+    return (uint8_t)(faces ? covered * COVERED / faces : UNKNOWN);
 }
 
 // Texels without faces, which filtering blends in, go on as their neighbours do.
