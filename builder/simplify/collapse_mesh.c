@@ -128,6 +128,9 @@ void prom_collapse_mesh_init(prom_collapse_mesh *mesh, const prom_vertex *vertic
         (void)prom_array_extend(&mesh->vertices, vertex_count);
         (void)prom_array_extend(&mesh->group, vertex_count);
         memcpy(mesh->vertices.data, vertices, vertex_count * sizeof *vertices);
+        for (uint32_t i = 0; i < vertex_count; i++)
+            for (int k = 0; k < 2; k++)
+                if (!isfinite(vertices[i].uv[k])) mesh->vertices.data[i].uv[k] = 0;
         if (groups) memcpy(mesh->group.data, groups, vertex_count * sizeof *groups);
     }
     find_points(mesh);

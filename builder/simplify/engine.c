@@ -15,31 +15,21 @@
 
 // ---- candidates
 
-static bool stale(const prom_collapser *c, const prom_candidate *e)
+static bool stale(const void *user, const prom_candidate *e)
 {
+    const prom_collapser *c = user;
     const prom_collapse_mesh *mesh = c->mesh;
     return mesh->first_corner[e->from] == PROM_NONE || mesh->first_corner[e->to] == PROM_NONE ||
            c->stamps[e->from] + c->stamps[e->to] != e->stamp;
 }
 
-static void drop_stale(prom_collapser *c)
-{
-    size_t kept = 0;
-    for (size_t i = 0; i < c->heap.items.count; i++)
-        if (!stale(c, &c->heap.items.data[i]))
-            c->heap.items.data[kept++] = c->heap.items.data[i];
-    c->heap.items.count = kept;
-    prom_heap_restore(&c->heap);
-}
-
 // Dropping what is stale pays if much of it is.
 static void make_room(prom_collapser *c)
 {
-    const size_t capacity = c->heap.items.capacity;
-    if (c->heap.items.count < capacity) return;
-    drop_stale(c);
-    if (c->heap.items.count > capacity / 8 * 7)
-        prom_array_reserve(&c->heap.items, capacity + capacity / 4);
+    const size_t capacity = c->queue.items.capacity;
+    if (prom_queue_is_full(&c->queue) &&
+        prom_queue_filter(&c->queue, stale, c) > capacity / 8 * 7)
+        prom_array_reserve(&c->queue.items, capacity + capacity / 4);
 }
 
 // The cheaper way to merge two points.
@@ -58,7 +48,7 @@ static bool find_candidate(prom_collapser *c, uint32_t a, uint32_t b, prom_candi
             continue;
         }
         if (found && !(step.result.cost < out->key)) continue;
-        *out = (prom_candidate){step.result.cost, from, to, c->stamps[a] + c->stamps[b]};
+        *out = (prom_candidate){step.result.cost, from, to, c->stamps[a] + c->stamps[b], 0};
         found = true;
     }
     return found;
@@ -69,7 +59,7 @@ static void push_candidate(prom_collapser *c, uint32_t a, uint32_t b)
     prom_candidate e;
     if (!find_candidate(c, a, b, &e)) return;
     make_room(c);
-    prom_heap_push(&c->heap, e);
+    prom_queue_push(&c->queue, &e);
 }
 
 // Calls for every edge and virtual edge around a point, once each; only those with lower points
@@ -105,21 +95,13 @@ static bool for_each_edge(prom_collapser *c, uint32_t point, bool lower,
     return once > 0;
 }
 
-// Put in unordered; the heap is restored at the end.
-static void append_candidate(prom_collapser *c, uint32_t a, uint32_t b)
-{
-    prom_candidate e;
-    if (find_candidate(c, a, b, &e)) prom_array_push(&c->heap.items, e);
-}
-
 static void gather_candidates(prom_collapser *c)
 {
-    c->heap.items.count = 0;
+    prom_queue_clear(&c->queue);
     c->left_out = false;
-    prom_array_reserve(&c->heap.items, c->mesh->triangles + c->mesh->triangles / 2 + 16);
+    prom_array_reserve(&c->queue.items, c->mesh->triangles + c->mesh->triangles / 2 + 16);
     for (uint32_t p = 0; p < c->mesh->points; p++)
-        if (c->mesh->first_corner[p] != PROM_NONE) for_each_edge(c, p, true, append_candidate);
-    prom_heap_restore(&c->heap);
+        if (c->mesh->first_corner[p] != PROM_NONE) for_each_edge(c, p, true, push_candidate);
 }
 
 // ---- beginning and end
@@ -150,8 +132,8 @@ static size_t bytes_now(const prom_collapser *c)
 {
     const size_t per_point = sizeof *c->stamps + sizeof *c->flags + sizeof *c->marks.mark;
     return prom_collapse_mesh_bytes(c->mesh) + c->options.metric->bytes(c->metric) +
-           c->heap.items.capacity * sizeof *c->heap.items.data +
-           prom_pairs_bytes(&c->pairs, c->mesh) + c->mesh->points * per_point;
+           prom_queue_bytes(&c->queue) + prom_pairs_bytes(&c->pairs, c->mesh) +
+           c->mesh->points * per_point;
 }
 
 static void note_bytes(prom_collapser *c)
@@ -172,6 +154,7 @@ prom_collapser *prom_collapser_create(prom_collapse_mesh *mesh,
     c->stamps = prom_calloc(mesh->points, sizeof *c->stamps);
     c->flags = prom_calloc(mesh->points, sizeof *c->flags);
     prom_marks_init(&c->marks, mesh->points);
+    prom_queue_init(&c->queue);
     c->metric = c->options.metric->create(mesh, &c->options.weights);
     prom_pairs_init(&c->pairs, mesh, options->pair_distance);
     find_flags(c, options->locked);
@@ -185,7 +168,7 @@ void prom_collapser_destroy(prom_collapser *c)
 {
     if (!c) return;
     c->options.metric->destroy(c->metric);
-    prom_array_finish(&c->heap.items);
+    prom_queue_finish(&c->queue);
     prom_pairs_finish(&c->pairs);
     prom_marks_finish(&c->marks);
     prom_slots_finish(&c->slots);
@@ -214,9 +197,9 @@ static void count_rejected(prom_collapser *c, prom_verdict verdict)
 // After a collapse: candidates around the merged point are made anew.
 static void renew(prom_collapser *c, uint32_t point)
 {
+    const bool border = for_each_edge(c, point, false, push_candidate);
     c->flags[point] &= (uint8_t)~PROM_POINT_BORDER;
-    if (for_each_edge(c, point, false, NULL)) c->flags[point] |= PROM_POINT_BORDER;
-    for_each_edge(c, point, false, push_candidate);
+    c->flags[point] |= border ? PROM_POINT_BORDER : 0;
 }
 
 typedef enum outcome { DONE, TOO_MUCH, REFUSED, AGAINST_LINK } outcome;
@@ -257,14 +240,14 @@ static void come_again(prom_collapser *c, prom_candidate e)
     c->left_out = true;
     if (!prom_step_evaluate(c, e.from, e.to, false, &step)) return;
     e.key *= COME_AGAIN;
-    if (e.key > 0 && e.key <= LAST_TIME * step.result.cost) prom_heap_push(&c->heap, e);
+    if (e.key > 0 && e.key <= LAST_TIME * step.result.cost) prom_queue_push(&c->queue, &e);
 }
 
 // Until the target is reached or no candidate is left.
 static void run_round(prom_collapser *c, uint32_t target, float limit)
 {
-    while (c->mesh->triangles > target && c->heap.items.count) {
-        const prom_candidate e = prom_heap_pop(&c->heap);
+    prom_candidate e;
+    while (c->mesh->triangles > target && prom_queue_pop(&c->queue, &e)) {
         if (stale(c, &e)) continue;
         const outcome result = attempt_all(c, &e, limit);
         if (result == TOO_MUCH) c->left_out = true;

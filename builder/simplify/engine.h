@@ -17,7 +17,7 @@
 #include "builder/simplify/records.h"
 
 typedef struct prom_collapse_options {
-    const prom_metric_class *metric; // NULL: qem-attributes
+    const prom_collapse_metric_class *metric; // NULL: qem-attributes
     prom_metric_weights weights;
     bool half_edge;        // survivors are vertices of the original: nothing is appended
     bool lock_border;      // open borders stay exactly

@@ -4,8 +4,8 @@
 
 #include "builder/simplify/engine.h"
 #include "builder/simplify/guard.h"
-#include "builder/simplify/heap.h"
 #include "builder/simplify/pairs.h"
+#include "builder/simplify/queue.h"
 #include "builder/simplify/slots.h"
 
 enum {
@@ -17,8 +17,8 @@ enum {
 struct prom_collapser {
     prom_collapse_mesh *mesh;
     prom_collapse_options options;
-    prom_metric *metric;
-    prom_heap heap;
+    prom_collapse_metric *metric;
+    prom_queue queue;
     prom_pairs pairs;
     prom_marks marks;
     prom_slots slots;

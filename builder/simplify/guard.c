@@ -100,32 +100,50 @@ static float face_normal(const float a[3], const float b[3], const float c[3], f
     return fmaxf(glm_vec3_norm2(e), fmaxf(glm_vec3_norm2(f), glm_vec3_norm2(g)));
 }
 
-static prom_verdict judge(const float old[3], const float place[3], const float b[3],
-                          const float c[3])
+// Whether a face looks the way that its corners' normals do, one of them being `first`.
+static bool looks_outward(const prom_vertex *const corners[3], const prom_vertex *first,
+                          const float normal[3])
+{
+    float sum = 0;
+    for (int k = 0; k < 3; k++)
+        sum += normal[k] *
+               (float)(first->normal[k] + corners[1]->normal[k] + corners[2]->normal[k]);
+    return sum > 0;
+}
+
+// partner: a vertex of the other point; what the merged one will look like is between.
+static prom_verdict judge(const prom_vertex *const corners[3], const prom_vertex *partner,
+                          const float place[3])
 {
     float was[3], is[3];
-    const float was_longest = face_normal(old, b, c, was);
+    const float *b = corners[1]->position, *c = corners[2]->position;
+    const float was_longest = face_normal(corners[0]->position, b, c, was);
     const float is_longest = face_normal(place, b, c, is);
     const float was_area = glm_vec3_norm(was), is_area = glm_vec3_norm(is);
     if (!(is_area > FLT_MIN) || !isfinite(is_area)) return PROM_VERDICT_DEGENERATE;
-    // Slivers grow less slim or stay; they must not be made.
+    // Slivers that are there may stay, but they must not be made.
     const float is_slim = is_area / is_longest, was_slim = was_area / was_longest;
     if (is_slim < SLIVER && is_slim < MUCH_SLIMMER * was_slim) return PROM_VERDICT_DEGENERATE;
     if (!(was_area > FLT_MIN)) return PROM_VERDICT_GOOD;
-    for (int k = 0; k < 3; k++) was[k] /= was_area, is[k] /= is_area;
-    return glm_vec3_dot(was, is) < LEAST_COSINE ? PROM_VERDICT_FLIP : PROM_VERDICT_GOOD;
+    if (glm_vec3_dot(was, is) < LEAST_COSINE * was_area * is_area) return PROM_VERDICT_FLIP;
+    // Small turns add up; normals remember where a face looked at first.
+    if (!looks_outward(corners, corners[0], was)) return PROM_VERDICT_GOOD;
+    return looks_outward(corners, corners[0], is) && looks_outward(corners, partner, is)
+               ? PROM_VERDICT_GOOD
+               : PROM_VERDICT_FLIP;
 }
 
 static prom_verdict judge_star(const prom_collapse_mesh *mesh, uint32_t point, uint32_t other,
                                const float place[3])
 {
     const prom_vertex *v = mesh->vertices.data;
+    const prom_vertex *partner = &v[mesh->corners[mesh->first_corner[other]]];
     for (uint32_t c = mesh->first_corner[point]; c != PROM_NONE; c = mesh->next_corner[c]) {
         const uint32_t after = mesh->corners[prom_corner_after(c)];
         const uint32_t before = mesh->corners[prom_corner_before(c)];
         if (mesh->point.data[after] == other || mesh->point.data[before] == other) continue;
-        const prom_verdict verdict =
-            judge(mesh->position[point], place, v[after].position, v[before].position);
+        const prom_vertex *const corners[3] = {&v[mesh->corners[c]], &v[after], &v[before]};
+        const prom_verdict verdict = judge(corners, partner, place);
         if (verdict) return verdict;
     }
     return PROM_VERDICT_GOOD;

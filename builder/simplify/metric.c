@@ -1,16 +1,16 @@
 #include "builder/simplify/metric.h"
 
-static const prom_metric_class *const classes[] = {&prom_metric_attributes, &prom_metric_qem,
-                                                   &prom_metric_shortest};
+static const prom_collapse_metric_class *const classes[] = {
+    &prom_collapse_attributes, &prom_collapse_qem, &prom_collapse_shortest};
 
-const prom_metric_class *prom_collapse_metric_at(uint32_t index)
+const prom_collapse_metric_class *prom_collapse_metric_at(uint32_t index)
 {
     return index < sizeof classes / sizeof *classes ? classes[index] : NULL;
 }
 
-const prom_metric_class *prom_metric_find(const char *name)
+const prom_collapse_metric_class *prom_collapse_metric_find(const char *name)
 {
-    const prom_metric_class *c = NULL;
+    const prom_collapse_metric_class *c = NULL;
     for (uint32_t i = 0; (c = prom_collapse_metric_at(i)); i++)
         if (!strcmp(c->name, name)) return c;
     return NULL;
@@ -18,24 +18,25 @@ const prom_metric_class *prom_metric_find(const char *name)
 
 // ---- shortest: no data but the mesh
 
-struct prom_metric {
+struct prom_collapse_metric {
     const prom_collapse_mesh *mesh;
 };
 
-static prom_metric *create(const prom_collapse_mesh *mesh, const prom_metric_weights *weights)
+static prom_collapse_metric *create(const prom_collapse_mesh *mesh,
+                                    const prom_metric_weights *weights)
 {
     (void)weights;
-    prom_metric *metric = prom_alloc(1, sizeof *metric);
+    prom_collapse_metric *metric = prom_alloc(1, sizeof *metric);
     metric->mesh = mesh;
     return metric;
 }
 
-static void destroy(prom_metric *metric)
+static void destroy(prom_collapse_metric *metric)
 {
     prom_free(metric);
 }
 
-static void evaluate(prom_metric *metric, const prom_collapse *collapse,
+static void evaluate(prom_collapse_metric *metric, const prom_collapse *collapse,
                      prom_collapse_result *result)
 {
     const float *a = metric->mesh->position[collapse->from];
@@ -50,12 +51,12 @@ static void evaluate(prom_metric *metric, const prom_collapse *collapse,
     result->error = collapse->fixed ? result->cost : result->cost / 4;
 }
 
-static size_t bytes(const prom_metric *metric)
+static size_t bytes(const prom_collapse_metric *metric)
 {
     return sizeof *metric;
 }
 
-const prom_metric_class prom_metric_shortest = {
+const prom_collapse_metric_class prom_collapse_shortest = {
     .name = "shortest",
     .create = create,
     .destroy = destroy,

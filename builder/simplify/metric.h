@@ -47,32 +47,35 @@ typedef struct prom_collapse_result {
     float place[3]; // of the merged point
 } prom_collapse_result;
 
-typedef struct prom_metric prom_metric;
+typedef struct prom_collapse_metric prom_collapse_metric;
 
-typedef struct prom_metric_class {
+typedef struct prom_collapse_metric_class {
     const char *name;   // as users type it
     bool uses_vertices; // else evaluate gets count and slot_count 0
-    prom_metric *(*create)(const prom_collapse_mesh *mesh, const prom_metric_weights *weights);
-    void (*destroy)(prom_metric *metric); // NULL is allowed
-    void (*evaluate)(prom_metric *metric, const prom_collapse *collapse,
+    prom_collapse_metric *(*create)(const prom_collapse_mesh *mesh,
+                                    const prom_metric_weights *weights);
+    void (*destroy)(prom_collapse_metric *metric); // NULL is allowed
+    void (*evaluate)(prom_collapse_metric *metric, const prom_collapse *collapse,
                      prom_collapse_result *result);
     // The vertices of slots that keep none: made[slot] holds the place and attributes
     // interpolated along the edge, and the metric sets those that it knows better. May be NULL.
-    void (*attributes)(prom_metric *metric, const prom_collapse *collapse, const float place[3],
-                       prom_vertex *made);
+    void (*attributes)(prom_collapse_metric *metric, const prom_collapse *collapse,
+                       const float place[3], prom_vertex *made);
     // The collapse is being done: vertices[slot] stands for all of the slot from now on. The
     // mesh's position of `to` is still the old one. May be NULL.
-    void (*merge)(prom_metric *metric, const prom_collapse *collapse, const float place[3],
-                  const uint32_t *vertices);
-    size_t (*bytes)(const prom_metric *metric); // of its own data, for reports
-} prom_metric_class;
+    void (*merge)(prom_collapse_metric *metric, const prom_collapse *collapse,
+                  const float place[3], const uint32_t *vertices);
+    size_t (*bytes)(const prom_collapse_metric *metric); // of its own data, for reports
+} prom_collapse_metric_class;
 
 // "qem": Garland and Heckbert 1997, area weighted. "qem-attributes": Hoppe 1999, "New quadric
 // metric for simplifying meshes with appearance attributes", the default. "shortest": the
 // length of the edge.
-const prom_metric_class *prom_metric_find(const char *name);      // NULL if there is none
-const prom_metric_class *prom_collapse_metric_at(uint32_t index); // NULL past the last
+const prom_collapse_metric_class *
+prom_collapse_metric_find(const char *name); // NULL if there is none
+const prom_collapse_metric_class *prom_collapse_metric_at(uint32_t index); // NULL past the last
 
-extern const prom_metric_class prom_metric_shortest, prom_metric_qem, prom_metric_attributes;
+extern const prom_collapse_metric_class prom_collapse_shortest, prom_collapse_qem,
+    prom_collapse_attributes;
 
 #endif

@@ -85,7 +85,7 @@ static void own(const torus *mesh, uint32_t triangles, const char *metric, bool 
     const double built = prom_clock_ms() - start;
     prom_records records;
     prom_records_init(&records, work.triangle_slots);
-    const prom_collapse_options options = {.metric = prom_metric_find(metric),
+    const prom_collapse_options options = {.metric = prom_collapse_metric_find(metric),
                                            .half_edge = half_edge,
                                            .records = recorded ? &records : NULL};
     prom_collapser *collapser = prom_collapser_create(&work, &options);
