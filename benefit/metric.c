@@ -85,15 +85,16 @@ size_t prom_metric_feature_floats(const prom_metric *metric, uint32_t width, uin
     return (size_t)metric->kind->planes * width * height;
 }
 
-static bool fits(const prom_metric *metric, uint32_t width, uint32_t height)
+static void check_size(const prom_metric *metric, uint32_t width, uint32_t height)
 {
-    return width && height && width <= metric->max_side && height <= metric->max_side &&
-           (size_t)width * height <= metric->max_pixels;
+    assert(width && height && width <= metric->max_side && height <= metric->max_side);
+    assert((size_t)width * height <= metric->max_pixels);
+    (void)metric, (void)width, (void)height;
 }
 
 void prom_metric_features(prom_metric *metric, const prom_picture *picture, float *features)
 {
-    assert(fits(metric, picture->width, picture->height));
+    check_size(metric, picture->width, picture->height);
     assert(picture->channels == 1 || picture->channels == 3 || picture->channels == 4);
     metric->kind->features(metric->state, picture, features);
 }
@@ -101,7 +102,7 @@ void prom_metric_features(prom_metric *metric, const prom_picture *picture, floa
 void prom_metric_compare(prom_metric *metric, const float *features_a, const float *features_b,
                          uint32_t width, uint32_t height, float *map)
 {
-    assert(fits(metric, width, height));
+    check_size(metric, width, height);
     metric->kind->compare(metric->state, features_a, features_b, width, height, map);
 }
 
