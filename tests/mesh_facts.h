@@ -19,6 +19,7 @@ typedef struct mesh_facts {
     uint32_t open_edges;   // with an odd number of triangles
     int32_t euler;         // points - edges + triangles
     uint32_t pinched;      // fans of triangles (joined by edges) around points, past the first
+    uint32_t pieces;       // joined by points
 } mesh_facts;
 
 typedef struct mesh_facts_triangle {
@@ -54,22 +55,18 @@ static inline mesh_facts_edge mesh_facts_edge_of(uint32_t a, uint32_t b, uint32_
     return (mesh_facts_edge){b, a, {at_b, at_a}, true};
 }
 
-static inline uint32_t mesh_facts_root(uint32_t *fans, uint32_t corner)
+static inline uint32_t mesh_facts_root(uint32_t *sets, uint32_t i)
 {
-    while (fans[corner] != corner) corner = fans[corner] = fans[fans[corner]];
-    return corner;
+    while (sets[i] != i) i = sets[i] = sets[sets[i]];
+    return i;
 }
 
-// Returns how many fans became one.
-static inline uint32_t mesh_facts_join(uint32_t *fans, const uint32_t a[2], const uint32_t b[2])
+// Whether two sets became one.
+static inline bool mesh_facts_join(uint32_t *sets, uint32_t a, uint32_t b)
 {
-    uint32_t joined = 0;
-    for (int k = 0; k < 2; k++) {
-        const uint32_t x = mesh_facts_root(fans, a[k]), y = mesh_facts_root(fans, b[k]);
-        joined += x != y;
-        fans[x] = y;
-    }
-    return joined;
+    const uint32_t x = mesh_facts_root(sets, a), y = mesh_facts_root(sets, b);
+    sets[x] = y;
+    return x != y;
 }
 
 static inline mesh_facts_triangle mesh_facts_sorted(uint32_t a, uint32_t b, uint32_t c)
@@ -91,7 +88,9 @@ static inline void mesh_facts_edges(mesh_facts *facts, const mesh_facts_edge *ed
         uint32_t along[2] = {0};
         for (end = i; end < count && !mesh_facts_by_ends(edges + end, edges + i); end++) {
             along[edges[end].against]++;
-            facts->pinched -= mesh_facts_join(fans, edges[i].corners, edges[end].corners);
+            for (int k = 0; k < 2; k++)
+                facts->pinched -=
+                    mesh_facts_join(fans, edges[i].corners[k], edges[end].corners[k]);
         }
         const uint32_t most = along[0] > along[1] ? along[0] : along[1];
         if (most > facts->most_along) facts->most_along = most;
@@ -103,14 +102,15 @@ static inline void mesh_facts_edges(mesh_facts *facts, const mesh_facts_edge *ed
 }
 
 // corners: 3 * slots vertices, PROM_NONE in all three: no triangle. point: per vertex, below
-// 2^31; NULL: a vertex is its point.
+// their number; NULL: a vertex is its point.
 static inline mesh_facts mesh_facts_of(const uint32_t *corners, uint32_t slots,
                                        const uint32_t *point, uint32_t vertices)
 {
     mesh_facts facts = {.in_range = true};
     PROM_ARRAY(mesh_facts_edge) edges = {0};
     PROM_ARRAY(mesh_facts_triangle) triangles = {0};
-    uint8_t *used = prom_calloc(vertices, 1);
+    uint32_t *piece = prom_alloc(vertices, sizeof *piece); // per point
+    memset(piece, 0xff, vertices * sizeof *piece);
     for (const uint32_t *c = corners; c < corners + 3 * (size_t)slots; c += 3) {
         const int none = (c[0] == PROM_NONE) + (c[1] == PROM_NONE) + (c[2] == PROM_NONE);
         if (none == 3) continue;
@@ -123,9 +123,12 @@ static inline mesh_facts mesh_facts_of(const uint32_t *corners, uint32_t slots,
             const uint32_t next = (uint32_t)(k + 1) % 3, first = 3 * (uint32_t)triangles.count;
             prom_array_push(
                 &edges, mesh_facts_edge_of(p[k], p[next], first + (uint32_t)k, first + next));
-            facts.points += p[k] < vertices && !used[p[k]];
-            used[p[k]] = 1;
+            if (piece[p[k]] == PROM_NONE) {
+                piece[p[k]] = p[k];
+                facts.points++, facts.pieces++;
+            }
         }
+        for (int k = 1; k < 3; k++) facts.pieces -= mesh_facts_join(piece, p[0], p[k]);
         prom_array_push(&triangles, mesh_facts_sorted(p[0], p[1], p[2]));
     }
     facts.triangles = (uint32_t)triangles.count;
@@ -140,24 +143,29 @@ static inline mesh_facts mesh_facts_of(const uint32_t *corners, uint32_t slots,
     facts.euler = (int32_t)facts.points - (int32_t)facts.edges + (int32_t)facts.triangles;
     prom_array_finish(&edges);
     prom_array_finish(&triangles);
-    prom_free(used);
+    prom_free(piece);
     return facts;
 }
 
 // NULL if the mesh is as good as the one that it was made of, else what is wrong. That a
-// surface keeps its pieces and holes is asked where every edge had at most two triangles.
+// surface keeps its pieces and holes is asked of surfaces.
 static inline const char *mesh_facts_spoiled(const mesh_facts *now, const mesh_facts *original)
 {
-    const bool surface = original->most_sharing <= 2 && original->most_along <= 1;
+    const bool surface =
+        original->most_sharing <= 2 && original->most_along <= 1 && !original->pinched;
     if (!now->in_range) return "a corner has no vertex";
     if (now->degenerate) return "a triangle has two corners at one point";
     if (now->repeated > original->repeated) return "two triangles over the same points";
     if (now->most_sharing > original->most_sharing && now->most_sharing > 2)
         return "an edge has more triangles than any had";
-    if (surface && now->most_along > 1) return "neighbours are of opposite orientation";
     if (!original->open_edges && now->open_edges) return "a closed mesh is open";
-    if (surface && now->pinched > original->pinched) return "sheets meet in a point only";
-    if (surface && now->euler != original->euler) return "the Euler number changed";
+    if (!surface) return NULL;
+    if (now->most_along > 1) return "neighbours are of opposite orientation";
+    if (now->pinched) return "sheets meet in a point only";
+    if (now->pieces > original->pieces) return "a piece came apart";
+    // Only a disc can go altogether: with it one from the pieces and the Euler number.
+    const int32_t gone = (int32_t)(original->pieces - now->pieces);
+    if (now->euler + gone != original->euler) return "the Euler number changed";
     return NULL;
 }
 

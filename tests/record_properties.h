@@ -50,8 +50,8 @@ static inline const char *record_gapes(const record_subject *s, const uint32_t *
         if (corners[c] == PROM_NONE) continue;
         uint32_t *own = first + s->point[corners[c]];
         if (*own == PROM_NONE) *own = corners[c];
-        if (memcmp(s->vertices[*own].position, s->vertices[corners[c]].position,
-                   sizeof s->vertices->position))
+        const float *a = s->vertices[*own].position, *b = s->vertices[corners[c]].position;
+        if (a[0] != b[0] || a[1] != b[1] || a[2] != b[2]) // -0 is 0
             wrong = "vertices of one point stand apart";
     }
     prom_free(first);

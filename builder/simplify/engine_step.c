@@ -131,6 +131,17 @@ static void unlink_corner(prom_collapse_mesh *mesh, uint32_t corner)
     *at = mesh->next_corner[corner];
 }
 
+// A removed triangle's third point may keep others, of which none is in the star (sheets that
+// meet in a point). Who moves that point later depends on this: records.h.
+static void touch_third(prom_collapser *c, uint32_t third)
+{
+    const prom_collapse_mesh *mesh = c->mesh;
+    const uint32_t first = mesh->first_corner[third];
+    for (uint32_t i = first; i != PROM_NONE; i = mesh->next_corner[i])
+        if (prom_records_touched(c->options.records, i / 3)) return;
+    if (first != PROM_NONE) prom_records_touch(c->options.records, first / 3);
+}
+
 // Triangles with both points go; their corners stay in the lists of both until these are
 // rewired.
 static void remove_edge_triangles(prom_collapser *c, uint32_t from, uint32_t to)
@@ -145,6 +156,7 @@ static void remove_edge_triangles(prom_collapser *c, uint32_t from, uint32_t to)
         unlink_corner(mesh, a == to ? before : after);
         const uint32_t third = a == to ? b : a;
         mesh->points_left -= mesh->first_corner[third] == PROM_NONE;
+        if (c->options.records) touch_third(c, third);
         for (int k = 0; k < 3; k++) corners[k] = PROM_NONE;
         mesh->triangles--;
     }

@@ -60,7 +60,7 @@ void prom_records_touch(prom_records *records, uint32_t triangle)
 
 void prom_records_change(prom_records *records, uint32_t corner, uint32_t from, uint32_t to)
 {
-    assert(records->last[corner / 3] == current(records));
+    assert(records->open && prom_records_touched(records, corner / 3));
     const size_t first = prom_record_changes(records, current(records)).first;
     const size_t count = records->changes.count;
     prom_vertex_change *data = records->changes.data;
@@ -73,7 +73,7 @@ void prom_records_change(prom_records *records, uint32_t corner, uint32_t from, 
 
 void prom_records_remove(prom_records *records, uint32_t triangle, const uint32_t corners[3])
 {
-    assert(records->last[triangle] == current(records));
+    assert(records->open && prom_records_touched(records, triangle));
     prom_array_push(&records->removed,
                     (prom_removed_triangle){triangle, {corners[0], corners[1], corners[2]}});
 }

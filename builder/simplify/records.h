@@ -2,20 +2,25 @@
 //
 // Vertices are never changed (collapse_mesh.h): a record lists the corners that it gives other
 // vertices and the triangles that it removes, so undoing puts the old numbers back and is
-// exact. Its *star* is all triangles around its two points before the collapse. It depends on
-// every earlier record that was the last to have one of these triangles in its star. So the
-// records are a directed acyclic graph, and a *cut* of it (a set of records that holds with
-// each also those it depends on) is a mesh: a progressive mesh (Hoppe 1996) in the order in
-// which they were made, a multi-triangulation (De Floriani, Magillo and Puppo 1997) in any.
+// exact. Its *star* is all triangles around its two points before the collapse; and where a
+// removed triangle leaves its third point with others, of which none is in the star, one of
+// these. It depends on every earlier record that was the last to have one of its star's
+// triangles in its own. So the records are a directed acyclic graph, and a *cut* of it (a set
+// of records that holds with each also those it depends on) is a mesh: a progressive mesh
+// (Hoppe 1996) in the order in which they were made, a multi-triangulation (De Floriani,
+// Magillo and Puppo 1997) in any.
 //
 // Why the star is enough: of two records that neither depends on the other, no triangle is in
-// both stars, and each changes corners in its own star only. So each finds its star the same
-// whether or not the other was applied, and what was asked of the collapse (the link condition,
-// no edge shared by too many, nothing flipped) was asked of the star alone. Any order that
-// respects the dependencies comes from the recorded one by exchanging such neighbours. Why not
-// less: with the triangles around the vanishing point alone, a later collapse could be done
-// without one that cleared the link condition around the point that stays. Both points must
-// have triangles: one that lost its last could get new ones without depending on that.
+// both stars, and each changes corners in its own star only. So each finds the triangles around
+// its points the same whether or not the other was applied, and what was asked of the collapse
+// (the link condition, no edge shared by too many, nothing flipped) was asked of these alone.
+// Any order that respects the dependencies comes from the recorded one by exchanging such
+// neighbours. Why not less: with the triangles around the vanishing point alone, a later
+// collapse could be done without one that cleared the link condition around the point that
+// stays. And a removed triangle is around its third point no longer: where sheets meet in a
+// point only, that point could be moved later without the removal, and the triangle would be
+// there still, at the old place. Both points must have triangles: one that lost its last could
+// get new ones without depending on that.
 #ifndef PROM_SIMPLIFY_RECORDS_H
 #define PROM_SIMPLIFY_RECORDS_H
 
@@ -105,8 +110,14 @@ static inline prom_record_part prom_record_vertices(const prom_records *r, uint3
 // collapses only.
 void prom_records_begin(prom_records *records, uint32_t from, uint32_t to,
                         uint32_t next_vertex);
-// Every triangle of the star, before anything changes; a triangle may be named twice.
+// Every triangle of the star (see above; those around the two points before anything changes);
+// a triangle may be named twice.
 void prom_records_touch(prom_records *records, uint32_t triangle);
+// Whether it is in the star of the open record.
+static inline bool prom_records_touched(const prom_records *records, uint32_t triangle)
+{
+    return records->last[triangle] == (uint32_t)records->records.count - 1;
+}
 // A corner of the star gets another vertex. Corners with the same `from` and `to` in a row take
 // the least memory.
 void prom_records_change(prom_records *records, uint32_t corner, uint32_t from, uint32_t to);
