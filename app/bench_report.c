@@ -99,6 +99,7 @@ static void set_found(json_t *run, const prom_run_facts *f, const prom_run_stati
     set(run, "switches", pair_json("mean", t->switches, "px", t->switched_px));
     set(run, "benefit", mean_json(t->benefit_px));
     set(run, "loss", mean_json(t->loss_px));
+    set(run, "predicted_ms", pair_json("mean", t->predicted_ms.mean, "p99", t->predicted_ms.p99));
     set(run, "predict", pair_json("mape", t->mape, "worst_under", t->worst_under));
     set(run, "infeasible_frames", json_integer(r->infeasible_frames));
     set(run, "least_budget_ms",

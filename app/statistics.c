@@ -172,6 +172,8 @@ prom_run_statistics prom_run_statistics_of(const prom_frame_record *records, siz
     double *values = prom_alloc(count, sizeof *values);
     for (size_t i = 0; i < count; i++) values[i] = records[i].select_ms;
     s.select_ms = prom_spread_of(values, count);
+    for (size_t i = 0; i < count; i++) values[i] = records[i].predicted_ms;
+    s.predicted_ms = prom_spread_of(values, count);
     add_quality(records, count, values, &s);
     add_popping(records, count, &s);
     prom_free(values);

@@ -10,7 +10,7 @@ typedef struct prom_spread {
 } prom_spread;
 
 typedef struct prom_run_statistics {
-    prom_spread select_ms;
+    prom_spread select_ms, predicted_ms;
     double resolution; // mean scale that the pictures were drawn at
     double triangles, draws, cut_nodes, benefit_px, loss_px; // means
     double switches, switched_px;                            // means, see prom_switches

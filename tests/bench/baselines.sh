@@ -10,6 +10,8 @@
 #     -t LIST budgets in milliseconds instead
 #     -S NAME what they are compared with (the program's default)
 #     -B LIST baselines ("meta funkhouser feedback distance pixels sse")
+#     -P FILE a cost profile: nothing is measured, and the mean predicted time of drawing takes
+#             the place of p95; -b does not work then
 #
 # MODEL is a .prom file, PATH a camera path or `auto`. For each budget, each baseline's parameter is
 # searched until its p95 is within 5 % of the default's, which walks just before it each time:
@@ -18,7 +20,7 @@
 # began), the nearest is kept, and `ratio` says how far off it is. Both then walk once more,
 # compared with full detail; these are the rows. In bold: FLIP and loss that are less than the
 # default's.
-# It measures times, so nothing else should keep the machine busy.
+# It measures times, so nothing else should keep the machine busy, but with -P.
 # Reports stay in FOLDER; FOLDER/baselines.md is the table, also printed.
 set -eu
 here=$(dirname "$0")
@@ -32,8 +34,9 @@ percents="10 20 40"
 budgets=""
 ours=""
 baselines="meta funkhouser feedback distance pixels sse"
+profile=""
 near=0.05
-while getopts f:q:F:s:b:t:S:B: option; do
+while getopts f:q:F:s:b:t:S:B:P: option; do
     case $option in
     f) frames=$OPTARG ;;
     q) compared=$OPTARG ;;
@@ -43,11 +46,13 @@ while getopts f:q:F:s:b:t:S:B: option; do
     t) budgets=$OPTARG ;;
     S) ours=$OPTARG ;;
     B) baselines=$OPTARG ;;
+    P) profile=$OPTARG near=0.02 ;;
     *) usage ;;
     esac
 done
 shift $((OPTIND - 1))
 [ $# -ge 3 ] || usage
+[ -z "$profile" ] || [ -n "$budgets" ] || die "-P needs -t: full detail is not timed"
 program=$1
 out=$2
 shift 2
@@ -60,7 +65,8 @@ bench() {
     name=$1 quality=$2
     shift 2
     "$program" bench "$model" --path "$path" --resolution "$size" --frames "$frames" \
-        --quality-frames "$quality" --report "$out/$name.json" --quiet "$@" > /dev/null
+        --quality-frames "$quality" --report "$out/$name.json" --quiet \
+        ${profile:+--profile "$profile"} "$@" > /dev/null
 }
 
 bench_ours() {
@@ -82,18 +88,20 @@ bench_baseline() {
     bench "$tag-$baseline" "$quality" --selector "$baseline" "$@"
 }
 
-p95_of() {
-    jq -r '.runs[0].frame_ms.p95' "$out/$1.json"
+# time_of NAME: what is made equal.
+if [ -n "$profile" ]; then time_key=predicted_ms.mean; else time_key=frame_ms.p95; fi
+time_of() {
+    jq -r ".runs[0].$time_key" "$out/$1.json"
 }
 
 # pair [COMPARED]: ours and the baseline one after the other, since what the machine does meanwhile
-# moves both; sets $target and $time, their p95.
+# moves both; sets $target and $time.
 pair() {
     bench_ours "${1:-0}"
     bench_baseline "${1:-0}"
-    target=$(p95_of "$tag-ours")
-    time=$(p95_of "$tag-$baseline")
-    echo "$tag: $baseline at $value has a p95 of $time ms, ours $target" >&2
+    target=$(time_of "$tag-ours")
+    time=$(time_of "$tag-$baseline")
+    echo "$tag: $baseline at $value takes $time ms ($time_key), ours $target" >&2
 }
 
 # row NAME PARAMETER: against the run of ours.
@@ -104,7 +112,7 @@ row() {
         .[1].runs[0] as $ours | .[0].runs[0]
         | "| \($scene) | \(.resolution | join("x")) | \($budget | tonumber | r(1)) | " +
           "\(.selector) | \($parameter) | \(.frame_ms.mean | r(1)) | \(.frame_ms.p95 | r(1)) | " +
-          "\(.frame_ms.p95 / $ours.frame_ms.p95 | r(2)) | \(.miss_rate * 100 | r(1)) | " +
+          "\(.'"$time_key"' / $ours.'"$time_key"' | r(2)) | \(.miss_rate * 100 | r(1)) | " +
           "\(least(.quality.mean | r(4); .quality.mean; $ours.quality.mean)) | " +
           "\(least(.quality.loss * 100 | r(2); .quality.loss; $ours.quality.loss)) | " +
           "\(.switches.mean | r(1)) | \(.triangles.mean | round) |"' \
