@@ -19,7 +19,7 @@
 #define PROM_FACE_PX 64              // side of a stored impostor picture
 #define PROM_CLUSTER_TRIANGLES 2048u // of a cluster's fine mesh, at most
 // Side of an atlas of a cluster's mesh of each level, in texels, at most.
-#define PROM_ATLAS_PX(level) (256u >> (level))
+#define PROM_ATLAS_PX(level) (128u >> (level))
 
 typedef struct prom_level {
     prom_mesh mesh; // empty once its representation is written

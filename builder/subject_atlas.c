@@ -2,8 +2,10 @@
 // the world, where the lights are fixed.
 #include "builder/subject.h"
 
-// As many texels as a view of this size has pixels along any length, if there is room.
-#define SHARP_PX 256.0f
+// As many texels as a view of this size has pixels along any length, if there is room: enough,
+// since twice as many raised the mean accuracy of a small city's meshes from 0.373 to 0.375
+// only.
+#define SHARP_PX 128.0f
 #define SIDE_MIN 32u
 _Static_assert(PROM_ATLAS_PX(0) <= PROM_ATLAS_SIDE_MAX, "every level's can be baked");
 
