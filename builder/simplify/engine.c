@@ -18,24 +18,22 @@
 static bool stale(const void *user, const prom_candidate *e)
 {
     const prom_collapser *c = user;
-    const prom_collapse_mesh *mesh = c->mesh;
-    return mesh->first_corner[e->from] == PROM_NONE || mesh->first_corner[e->to] == PROM_NONE ||
-           c->stamps[e->from] + c->stamps[e->to] != e->stamp;
+    return c->points[e->from].stamp + c->points[e->to].stamp != e->stamp;
 }
 
 // Dropping what is stale pays if much of it is.
 static void make_room(prom_collapser *c)
 {
-    const size_t capacity = c->queue.items.capacity;
-    if (prom_queue_is_full(&c->queue) &&
-        prom_queue_filter(&c->queue, stale, c) > capacity / 8 * 7)
-        prom_array_reserve(&c->queue.items, capacity + capacity / 4);
+    if (c->queue.count < c->room) return;
+    prom_queue_filter(&c->queue, stale, c);
+    if (c->queue.count > c->room / 8 * 7) c->room += c->room / 4;
 }
 
 // The cheaper way to merge two points.
 static bool find_candidate(prom_collapser *c, uint32_t a, uint32_t b, prom_candidate *out)
 {
-    const bool locked[2] = {c->flags[a] & PROM_POINT_LOCKED, c->flags[b] & PROM_POINT_LOCKED};
+    const bool locked[2] = {c->points[a].flags & PROM_POINT_LOCKED,
+                            c->points[b].flags & PROM_POINT_LOCKED};
     bool found = false;
     if (locked[0] && locked[1]) c->stats.rejected_lock++;
     for (int turned = 0; turned < 2; turned++) {
@@ -48,7 +46,8 @@ static bool find_candidate(prom_collapser *c, uint32_t a, uint32_t b, prom_candi
             continue;
         }
         if (found && !(step.result.cost < out->key)) continue;
-        *out = (prom_candidate){step.result.cost, from, to, c->stamps[a] + c->stamps[b], 0};
+        *out = (prom_candidate){step.result.cost, from, to,
+                                c->points[a].stamp + c->points[b].stamp};
         found = true;
     }
     return found;
@@ -99,7 +98,7 @@ static void gather_candidates(prom_collapser *c)
 {
     prom_queue_clear(&c->queue);
     c->left_out = false;
-    prom_array_reserve(&c->queue.items, c->mesh->triangles + c->mesh->triangles / 2 + 16);
+    c->room = SIZE_MAX;
     for (uint32_t p = 0; p < c->mesh->points; p++)
         if (c->mesh->first_corner[p] != PROM_NONE) for_each_edge(c, p, true, push_candidate);
 }
@@ -119,18 +118,18 @@ static void find_flags(prom_collapser *c, const uint8_t *locked)
     const prom_collapse_mesh *mesh = c->mesh;
     for (uint32_t p = 0; p < mesh->points; p++) {
         if (mesh->first_corner[p] == PROM_NONE) continue;
-        if (for_each_edge(c, p, false, NULL)) c->flags[p] |= PROM_POINT_BORDER;
-        if (has_vertices(mesh, p)) c->flags[p] |= PROM_POINT_MULTIPLE;
-        if (c->options.lock_border && (c->flags[p] & PROM_POINT_BORDER))
-            c->flags[p] |= PROM_POINT_LOCKED;
+        if (for_each_edge(c, p, false, NULL)) c->points[p].flags |= PROM_POINT_BORDER;
+        if (has_vertices(mesh, p)) c->points[p].flags |= PROM_POINT_MULTIPLE;
+        if (c->options.lock_border && (c->points[p].flags & PROM_POINT_BORDER))
+            c->points[p].flags |= PROM_POINT_LOCKED;
     }
     for (uint32_t i = 0; i < mesh->base_vertices && locked; i++)
-        if (locked[i]) c->flags[mesh->point.data[i]] |= PROM_POINT_LOCKED;
+        if (locked[i]) c->points[mesh->point.data[i]].flags |= PROM_POINT_LOCKED;
 }
 
 static size_t bytes_now(const prom_collapser *c)
 {
-    const size_t per_point = sizeof *c->stamps + sizeof *c->flags + sizeof *c->marks.mark;
+    const size_t per_point = sizeof *c->points + sizeof *c->marks.mark;
     return prom_collapse_mesh_bytes(c->mesh) + c->options.metric->bytes(c->metric) +
            prom_queue_bytes(&c->queue) + prom_pairs_bytes(&c->pairs, c->mesh) +
            c->mesh->points * per_point;
@@ -151,8 +150,7 @@ prom_collapser *prom_collapser_create(prom_collapse_mesh *mesh,
     c->options = *options;
     c->options.locked = NULL;
     if (!c->options.metric) c->options.metric = prom_collapse_metric_at(0);
-    c->stamps = prom_calloc(mesh->points, sizeof *c->stamps);
-    c->flags = prom_calloc(mesh->points, sizeof *c->flags);
+    c->points = prom_calloc(mesh->points, sizeof *c->points);
     prom_marks_init(&c->marks, mesh->points);
     prom_queue_init(&c->queue);
     c->metric = c->options.metric->create(mesh, &c->options.weights);
@@ -174,8 +172,7 @@ void prom_collapser_destroy(prom_collapser *c)
     prom_slots_finish(&c->slots);
     prom_array_finish(&c->made);
     prom_array_finish(&c->survivors);
-    prom_free(c->stamps);
-    prom_free(c->flags);
+    prom_free(c->points);
     prom_free(c);
 }
 
@@ -198,8 +195,8 @@ static void count_rejected(prom_collapser *c, prom_verdict verdict)
 static void renew(prom_collapser *c, uint32_t point)
 {
     const bool border = for_each_edge(c, point, false, push_candidate);
-    c->flags[point] &= (uint8_t)~PROM_POINT_BORDER;
-    c->flags[point] |= border ? PROM_POINT_BORDER : 0;
+    c->points[point].flags &= ~(uint32_t)PROM_POINT_BORDER;
+    c->points[point].flags |= border ? PROM_POINT_BORDER : 0;
 }
 
 typedef enum outcome { DONE, TOO_MUCH, REFUSED, AGAINST_LINK } outcome;
@@ -209,7 +206,7 @@ static outcome attempt(prom_collapser *c, uint32_t from, uint32_t to, bool fixed
                        float most_cost, float limit)
 {
     prom_step step;
-    if (c->flags[from] & PROM_POINT_LOCKED) return REFUSED;
+    if (c->points[from].flags & PROM_POINT_LOCKED) return REFUSED;
     if (!prom_step_evaluate(c, from, to, fixed, &step) || step.result.cost > most_cost)
         return REFUSED;
     if (step.result.error > limit) return TOO_MUCH;

@@ -4,7 +4,7 @@
 
 static bool find_slots(prom_collapser *c, prom_collapse *collapse)
 {
-    const uint8_t flags = c->flags[collapse->from] | c->flags[collapse->to];
+    const uint32_t flags = c->points[collapse->from].flags | c->points[collapse->to].flags;
     const bool single = !(flags & PROM_POINT_MULTIPLE) && !prom_pairs_any(&c->pairs);
     return prom_slots_find(&c->slots, c->mesh, collapse, collapse->fixed, c->options.half_edge,
                            single);
@@ -13,7 +13,7 @@ static bool find_slots(prom_collapser *c, prom_collapse *collapse)
 bool prom_step_evaluate(prom_collapser *c, uint32_t from, uint32_t to, bool fixed,
                         prom_step *step)
 {
-    fixed |= c->options.half_edge || (c->flags[to] & PROM_POINT_LOCKED);
+    fixed |= c->options.half_edge || (c->points[to].flags & PROM_POINT_LOCKED);
     step->collapse = (prom_collapse){.from = from, .to = to, .fixed = fixed};
     // A half edge must be known to be possible whatever the metric looks at.
     if ((c->options.metric->uses_vertices || c->options.half_edge) &&
@@ -28,8 +28,9 @@ bool prom_step_evaluate(prom_collapser *c, uint32_t from, uint32_t to, bool fixe
 prom_verdict prom_step_judge(prom_collapser *c, const prom_step *step)
 {
     const uint32_t from = step->collapse.from, to = step->collapse.to;
-    const prom_verdict verdict = prom_guard_link(
-        c->mesh, &c->marks, from, to, c->flags[from] & c->flags[to] & PROM_POINT_BORDER);
+    const prom_verdict verdict =
+        prom_guard_link(c->mesh, &c->marks, from, to,
+                        c->points[from].flags & c->points[to].flags & PROM_POINT_BORDER);
     return verdict ? verdict : prom_guard_faces(c->mesh, from, to, step->result.place);
 }
 
@@ -142,6 +143,12 @@ static void touch_third(prom_collapser *c, uint32_t third)
     if (first != PROM_NONE) prom_records_touch(c->options.records, first / 3);
 }
 
+static void lose_point(prom_collapser *c, uint32_t point)
+{
+    c->points[point].stamp = PROM_STAMP_GONE;
+    c->mesh->points_left--;
+}
+
 // Triangles with both points go; their corners stay in the lists of both until these are
 // rewired.
 static void remove_edge_triangles(prom_collapser *c, uint32_t from, uint32_t to)
@@ -155,7 +162,7 @@ static void remove_edge_triangles(prom_collapser *c, uint32_t from, uint32_t to)
         if (c->options.records) prom_records_remove(c->options.records, i / 3, corners);
         unlink_corner(mesh, a == to ? before : after);
         const uint32_t third = a == to ? b : a;
-        mesh->points_left -= mesh->first_corner[third] == PROM_NONE;
+        if (mesh->first_corner[third] == PROM_NONE) lose_point(c, third);
         if (c->options.records) touch_third(c, third);
         for (int k = 0; k < 3; k++) corners[k] = PROM_NONE;
         mesh->triangles--;
@@ -202,18 +209,20 @@ void prom_step_apply(prom_collapser *c, const prom_step *step)
     const uint32_t rest = rewire(c, &collapse, mesh->first_corner[to], PROM_NONE);
     mesh->first_corner[to] = rewire(c, &collapse, mesh->first_corner[from], rest);
     mesh->first_corner[from] = PROM_NONE;
-    mesh->points_left -= 1 + (mesh->first_corner[to] == PROM_NONE);
     memcpy(mesh->position[to], place, sizeof *mesh->position);
     if (prom_pairs_any(&c->pairs)) prom_pairs_merge(&c->pairs, from, to);
 
     c->greatest_error = fmaxf(c->greatest_error, step->result.error);
     if (records)
         prom_records_end(records, sqrtf(step->result.error), (uint32_t)mesh->vertices.count);
-    c->stamps[to]++;
-    c->flags[to] |= c->flags[from];
-    if (collapse.slot_count < 2)
-        c->flags[to] &= (uint8_t)~PROM_POINT_MULTIPLE;
+    prom_point_state *merged = &c->points[to];
+    merged->stamp++;
+    merged->flags |= c->points[from].flags;
+    if (collapse.slot_count > 1)
+        merged->flags |= PROM_POINT_MULTIPLE;
     else
-        c->flags[to] |= PROM_POINT_MULTIPLE;
+        merged->flags &= ~(uint32_t)PROM_POINT_MULTIPLE;
+    lose_point(c, from);
+    if (mesh->first_corner[to] == PROM_NONE) lose_point(c, to);
     c->stats.collapses++;
 }

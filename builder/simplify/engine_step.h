@@ -14,6 +14,14 @@ enum {
     PROM_POINT_MULTIPLE = 4, // may have more than one vertex
 };
 
+// No sum with another stamp is that of two points that are there.
+#define PROM_STAMP_GONE (1u << 30)
+
+typedef struct prom_point_state {
+    uint32_t stamp; // how often it was merged, PROM_STAMP_GONE: it has no triangles any more
+    uint32_t flags;
+} prom_point_state;
+
 struct prom_collapser {
     prom_collapse_mesh *mesh;
     prom_collapse_options options;
@@ -22,8 +30,8 @@ struct prom_collapser {
     prom_pairs pairs;
     prom_marks marks;
     prom_slots slots;
-    uint32_t *stamps; // per point: how often it was merged
-    uint8_t *flags;   // per point
+    prom_point_state *points; // per point
+    size_t room;              // so many candidates are worth a look at which are stale
     PROM_ARRAY(prom_vertex) made;
     PROM_ARRAY(uint32_t) survivors; // per slot
     float greatest_error;           // squared

@@ -49,12 +49,22 @@ static float *side_at(const prom_collapse_metric *metric, uint32_t vertex)
 
 static void load_side(const prom_collapse_metric *metric, uint32_t vertex, side *out)
 {
-    memcpy(out, side_at(metric, vertex), side_floats(metric) * sizeof(float));
+    const float *from = side_at(metric, vertex);
+    memcpy(&out->q, from, sizeof out->q);
+    from += sizeof out->q / sizeof *from;
+    for (uint32_t j = 0; j < metric->count; j++)
+        memcpy(out->g[j], from + 4 * (size_t)j, sizeof out->g[j]);
 }
 
 static void store_side(prom_collapse_metric *metric, uint32_t vertex, const side *in)
 {
     memcpy(side_at(metric, vertex), in, side_floats(metric) * sizeof(float));
+}
+
+static void clear_side(side *s, uint32_t count)
+{
+    memset(&s->q, 0, sizeof s->q);
+    for (uint32_t j = 0; j < count; j++) memset(s->g[j], 0, sizeof s->g[j]);
 }
 
 static float finite_or_zero(float x)
@@ -112,7 +122,7 @@ static void sum_slot(const prom_collapse_metric *metric, const prom_collapse *co
     float offset[3];
     prom_point_quadrics_offset(&metric->points, mesh->position[collapse->from],
                                mesh->position[collapse->to], offset);
-    memset(sum, 0, sizeof *sum);
+    clear_side(sum, metric->count);
     for (uint32_t i = 0; i < collapse->count; i++) {
         if (collapse->slots[i] != slot) continue;
         side s;

@@ -20,7 +20,7 @@ void prom_queue_init(prom_queue *queue)
 
 void prom_queue_finish(prom_queue *queue)
 {
-    prom_array_finish(&queue->items);
+    prom_array_finish(&queue->blocks);
     prom_free(queue->buckets);
     memset(queue, 0, sizeof *queue);
 }
@@ -28,67 +28,80 @@ void prom_queue_finish(prom_queue *queue)
 void prom_queue_clear(prom_queue *queue)
 {
     memset(queue->buckets, 0xff, BUCKETS * sizeof *queue->buckets);
-    queue->items.count = 0;
+    queue->blocks.count = queue->count = 0;
     queue->lowest = BUCKETS;
-    queue->unused = NOTHING;
+    queue->free = NOTHING;
 }
 
-bool prom_queue_is_full(const prom_queue *queue)
+static uint32_t take_block(prom_queue *queue)
 {
-    return queue->unused == NOTHING && queue->items.count == queue->items.capacity;
+    uint32_t block = queue->free;
+    if (block == NOTHING) {
+        prom_array_reserve(&queue->blocks, queue->blocks.count + 1);
+        return (uint32_t)queue->blocks.count++;
+    }
+    queue->free = queue->blocks.data[block].next;
+    return block;
+}
+
+static void give_block(prom_queue *queue, uint32_t block)
+{
+    queue->blocks.data[block].next = queue->free;
+    queue->free = block;
 }
 
 void prom_queue_push(prom_queue *queue, const prom_candidate *candidate)
 {
     const uint32_t bucket = bucket_of(candidate->key);
-    uint32_t at = queue->unused;
-    if (at == NOTHING) {
-        at = (uint32_t)queue->items.count;
-        prom_array_push(&queue->items, *candidate);
-    } else {
-        queue->unused = queue->items.data[at].next;
-        queue->items.data[at] = *candidate;
+    uint32_t first = queue->buckets[bucket];
+    if (first == NOTHING || queue->blocks.data[first].count == PROM_QUEUE_BLOCK) {
+        const uint32_t block = take_block(queue);
+        queue->blocks.data[block].count = 0;
+        queue->blocks.data[block].next = first;
+        first = queue->buckets[bucket] = block;
     }
-    queue->items.data[at].next = queue->buckets[bucket];
-    queue->buckets[bucket] = at;
+    prom_queue_block *block = &queue->blocks.data[first];
+    block->items[block->count++] = *candidate;
+    queue->count++;
     if (bucket < queue->lowest) queue->lowest = bucket;
 }
 
 bool prom_queue_pop(prom_queue *queue, prom_candidate *out)
 {
-    while (queue->lowest < BUCKETS && queue->buckets[queue->lowest] == NOTHING) queue->lowest++;
-    if (queue->lowest == BUCKETS) return false;
-    const uint32_t at = queue->buckets[queue->lowest];
-    *out = queue->items.data[at];
-    queue->buckets[queue->lowest] = out->next;
-    queue->items.data[at].next = queue->unused;
-    queue->unused = at;
+    if (!queue->count) return false;
+    while (queue->buckets[queue->lowest] == NOTHING) queue->lowest++;
+    const uint32_t first = queue->buckets[queue->lowest];
+    prom_queue_block *block = &queue->blocks.data[first];
+    *out = block->items[--block->count];
+    queue->count--;
+    if (!block->count) {
+        queue->buckets[queue->lowest] = block->next;
+        give_block(queue, first);
+    }
     return true;
 }
 
-size_t prom_queue_filter(prom_queue *queue,
-                         bool (*stale)(const void *user, const prom_candidate *),
-                         const void *user)
+void prom_queue_filter(prom_queue *queue,
+                       bool (*stale)(const void *user, const prom_candidate *),
+                       const void *user)
 {
-    size_t left = 0;
-    for (uint32_t bucket = queue->lowest; bucket < BUCKETS; bucket++)
-        for (uint32_t *link = &queue->buckets[bucket]; *link != NOTHING;) {
-            const uint32_t at = *link;
-            prom_candidate *item = &queue->items.data[at];
-            if (stale(user, item)) {
-                *link = item->next;
-                item->next = queue->unused;
-                queue->unused = at;
-            } else {
-                link = &item->next;
-                left++;
-            }
+    // What stays is pushed again; blocks are given back before, so that no more are taken.
+    for (uint32_t bucket = 0; bucket < BUCKETS; bucket++) {
+        uint32_t block = queue->buckets[bucket];
+        queue->buckets[bucket] = NOTHING;
+        while (block != NOTHING) {
+            const prom_queue_block copy = queue->blocks.data[block];
+            give_block(queue, block);
+            block = copy.next;
+            queue->count -= copy.count;
+            for (uint32_t i = 0; i < copy.count; i++)
+                if (!stale(user, &copy.items[i])) prom_queue_push(queue, &copy.items[i]);
         }
-    return left;
+    }
 }
 
 size_t prom_queue_bytes(const prom_queue *queue)
 {
-    return queue->items.capacity * sizeof *queue->items.data +
+    return queue->blocks.capacity * sizeof *queue->blocks.data +
            BUCKETS * sizeof *queue->buckets;
 }

@@ -95,16 +95,15 @@ static void give_slot(prom_slots *s, uint32_t entry, bool kept)
     prom_array_push(&s->kept, kept ? s->entries.data[entry].vertex : PROM_NONE);
 }
 
-// The entry before `end` in the vertex's group that fits best and, if asked, has a slot.
+// The entry before `end` in the vertex's group that fits best.
 static uint32_t best_fit(const prom_slots *s, const prom_collapse_mesh *mesh, uint32_t vertex,
-                         uint32_t end, bool with_slot)
+                         uint32_t end)
 {
     uint32_t best = PROM_NONE;
     float least = INFINITY;
     for (uint32_t i = 0; i < end; i++) {
         const uint32_t other = s->entries.data[i].vertex;
         if (mesh->group.data[other] != mesh->group.data[vertex]) continue;
-        if (with_slot && s->slots.data[i] == PROM_NONE) continue;
         const float misfit = misfit_of(mesh, vertex, other);
         if (misfit < least) least = misfit, best = i;
     }
@@ -118,7 +117,7 @@ static bool place_from(prom_slots *s, const prom_collapse_mesh *mesh, uint32_t e
     if (e->partner != PROM_NONE) {
         s->slots.data[entry] = s->slots.data[e->partner];
     } else if (e->stays && half_edge) {
-        const uint32_t fit = best_fit(s, mesh, e->vertex, of_to, false);
+        const uint32_t fit = best_fit(s, mesh, e->vertex, of_to);
         if (fit == PROM_NONE) return false;
         if (s->slots.data[fit] == PROM_NONE) give_slot(s, fit, true);
         s->slots.data[entry] = s->slots.data[fit];
@@ -126,6 +125,30 @@ static bool place_from(prom_slots *s, const prom_collapse_mesh *mesh, uint32_t e
         give_slot(s, entry, false);
     }
     return true;
+}
+
+// Vertices of one point whose triangles all go. Where the texture goes on beside them their
+// normals and colours count on; a chart that vanishes is not missed by its coordinates, which
+// say nothing to others, but by the quadrics along its seams.
+static void fold(prom_slots *s, const prom_collapse_mesh *mesh, uint32_t first, uint32_t end)
+{
+    for (uint32_t i = first; i < end; i++) {
+        if (s->slots.data[i] != PROM_NONE) continue;
+        const uint32_t vertex = s->entries.data[i].vertex;
+        const float *uv = mesh->vertices.data[vertex].uv;
+        float least = INFINITY;
+        for (uint32_t k = first; k < end; k++) {
+            const uint32_t other = s->entries.data[k].vertex;
+            if (k == i || s->slots.data[k] == PROM_NONE ||
+                mesh->group.data[other] != mesh->group.data[vertex] ||
+                memcmp(uv, mesh->vertices.data[other].uv, 2 * sizeof *uv))
+                continue;
+            const float misfit = misfit_of(mesh, vertex, other);
+            if (!(misfit < least)) continue;
+            least = misfit;
+            s->slots.data[i] = s->slots.data[k];
+        }
+    }
 }
 
 static bool place_all(prom_slots *s, const prom_collapse_mesh *mesh, uint32_t of_to, bool keep,
@@ -140,12 +163,8 @@ static bool place_all(prom_slots *s, const prom_collapse_mesh *mesh, uint32_t of
     }
     for (uint32_t i = of_to; i < n; i++)
         if (!place_from(s, mesh, i, of_to, half_edge)) return false;
-    const size_t placed = s->owners.count;
-    for (uint32_t i = 0; i < n && placed; i++) {
-        if (s->slots.data[i] != PROM_NONE) continue;
-        const uint32_t fit = best_fit(s, mesh, s->entries.data[i].vertex, n, true);
-        if (fit != PROM_NONE) s->slots.data[i] = s->slots.data[fit];
-    }
+    fold(s, mesh, 0, of_to);
+    fold(s, mesh, of_to, n);
     return true;
 }
 
