@@ -156,8 +156,8 @@ static inline const char *mesh_facts_spoiled(const mesh_facts *now, const mesh_f
     if (!now->in_range) return "a corner has no vertex";
     if (now->degenerate) return "a triangle has two corners at one point";
     if (now->repeated > original->repeated) return "two triangles over the same points";
-    if (now->most_sharing > original->most_sharing && now->most_sharing > 2)
-        return "an edge has more triangles than any had";
+    if (original->most_sharing <= 2 && now->most_sharing > 2)
+        return "an edge has more than two triangles";
     if (!original->open_edges && now->open_edges) return "a closed mesh is open";
     if (!surface) return NULL;
     if (now->most_along > 1) return "neighbours are of opposite orientation";

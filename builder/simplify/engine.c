@@ -84,7 +84,8 @@ static bool for_each_edge(prom_collapser *c, uint32_t point, bool lower,
                 once--;
             }
         }
-    if (!each || !prom_pairs_any(&c->pairs)) return once > 0;
+    if (!each || !prom_pairs_any(&c->pairs) || mesh->first_corner[point] == PROM_NONE)
+        return once > 0; // a point without triangles is gone, pairs or not
     for (uint32_t i = c->pairs.first[point]; i != PROM_NONE; i = c->pairs.links.data[i].next) {
         const uint32_t other = prom_pairs_find(&c->pairs, c->pairs.links.data[i].other);
         if (mark[other] >= epoch || mesh->first_corner[other] == PROM_NONE) continue;
