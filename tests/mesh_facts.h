@@ -151,8 +151,8 @@ static inline mesh_facts mesh_facts_of(const uint32_t *corners, uint32_t slots,
 // surface keeps its pieces and holes is asked of surfaces.
 static inline const char *mesh_facts_spoiled(const mesh_facts *now, const mesh_facts *original)
 {
-    const bool surface =
-        original->most_sharing <= 2 && original->most_along <= 1 && !original->pinched;
+    const bool surface = original->most_sharing <= 2 && original->most_along <= 1 &&
+                         !original->pinched && !original->repeated;
     if (!now->in_range) return "a corner has no vertex";
     if (now->degenerate) return "a triangle has two corners at one point";
     if (now->repeated > original->repeated) return "two triangles over the same points";
