@@ -2,6 +2,7 @@
 
 #include "metaobj/base/clock.h"
 
+#include <assert.h>
 #include <math.h>
 
 // A candidate that a guard turned away comes again when the others cost twice as much, so many
@@ -145,6 +146,7 @@ static void note_bytes(prom_collapser *c)
 prom_collapser *prom_collapser_create(prom_collapse_mesh *mesh,
                                       const prom_collapse_options *options)
 {
+    assert(!(options->loose && options->records));
     const double start = prom_clock_ms();
     prom_collapser *c = prom_calloc(1, sizeof *c);
     c->mesh = mesh;

@@ -24,6 +24,8 @@ typedef struct prom_collapse_options {
     const uint8_t *locked; // per original vertex, nonzero: it stays, exactly; NULL: none
     float pair_distance;   // points of different pieces closer than this are candidates too
                            // (virtual edges; Garland and Heckbert 1997, section 3.2); 0: none
+    bool loose;            // connections may change: holes and gaps close, parts become one
+                           // or vanish (Garland and Heckbert 1997); not with records
     prom_records *records; // NULL: nothing is recorded; of the mesh's triangle_slots
 } prom_collapse_options;
 

@@ -28,9 +28,10 @@ bool prom_step_evaluate(prom_collapser *c, uint32_t from, uint32_t to, bool fixe
 prom_verdict prom_step_judge(prom_collapser *c, const prom_step *step)
 {
     const uint32_t from = step->collapse.from, to = step->collapse.to;
-    const prom_verdict verdict =
-        prom_guard_link(c->mesh, &c->marks, from, to,
-                        c->points[from].flags & c->points[to].flags & PROM_POINT_BORDER);
+    const bool borders = c->points[from].flags & c->points[to].flags & PROM_POINT_BORDER;
+    const prom_verdict verdict = c->options.loose
+                                     ? prom_guard_stars(c->mesh, from, to)
+                                     : prom_guard_link(c->mesh, &c->marks, from, to, borders);
     return verdict ? verdict : prom_guard_faces(c->mesh, from, to, step->result.place);
 }
 
@@ -169,6 +170,35 @@ static void remove_edge_triangles(prom_collapser *c, uint32_t from, uint32_t to)
     }
 }
 
+// Whether the point has a triangle with these two after it.
+static bool has_triangle(const prom_collapse_mesh *mesh, uint32_t point, uint32_t a, uint32_t b)
+{
+    for (uint32_t i = mesh->first_corner[point]; i != PROM_NONE; i = mesh->next_corner[i])
+        if (mesh->corners[i] != PROM_NONE &&
+            prom_corner_point(mesh, prom_corner_after(i)) == a &&
+            prom_corner_point(mesh, prom_corner_before(i)) == b)
+            return true;
+    return false;
+}
+
+// Where connections may change, triangles of `from` may be those of `to` again; the back sides
+// of one another stay. After those with both points are gone.
+static void remove_repeated(prom_collapser *c, uint32_t from, uint32_t to)
+{
+    prom_collapse_mesh *mesh = c->mesh;
+    for (uint32_t i = mesh->first_corner[from]; i != PROM_NONE; i = mesh->next_corner[i]) {
+        if (mesh->corners[i] == PROM_NONE) continue;
+        const uint32_t after = prom_corner_after(i), before = prom_corner_before(i);
+        if (!has_triangle(mesh, to, prom_corner_point(mesh, after),
+                          prom_corner_point(mesh, before)))
+            continue;
+        unlink_corner(mesh, after);
+        unlink_corner(mesh, before);
+        for (uint32_t k = 0; k < 3; k++) mesh->corners[i / 3 * (size_t)3 + k] = PROM_NONE;
+        mesh->triangles--;
+    }
+}
+
 // Gives the corners of a list their new vertices and puts them in front of `rest`.
 static uint32_t rewire(prom_collapser *c, const prom_collapse *collapse, uint32_t first,
                        uint32_t rest)
@@ -206,6 +236,7 @@ void prom_step_apply(prom_collapser *c, const prom_step *step)
     if (c->options.metric->merge)
         c->options.metric->merge(c->metric, &collapse, place, c->survivors.data);
     remove_edge_triangles(c, from, to);
+    if (c->options.loose) remove_repeated(c, from, to);
     const uint32_t rest = rewire(c, &collapse, mesh->first_corner[to], PROM_NONE);
     mesh->first_corner[to] = rewire(c, &collapse, mesh->first_corner[from], rest);
     mesh->first_corner[from] = PROM_NONE;

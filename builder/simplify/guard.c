@@ -91,6 +91,20 @@ prom_verdict prom_guard_link(const prom_collapse_mesh *mesh, prom_marks *marks, 
     return PROM_VERDICT_GOOD;
 }
 
+static bool star_is_too_long(const prom_collapse_mesh *mesh, uint32_t point)
+{
+    uint32_t n = 0;
+    for (uint32_t c = mesh->first_corner[point]; c != PROM_NONE; c = mesh->next_corner[c])
+        if (++n > LONGEST_STAR) return true;
+    return false;
+}
+
+prom_verdict prom_guard_stars(const prom_collapse_mesh *mesh, uint32_t from, uint32_t to)
+{
+    return star_is_too_long(mesh, from) || star_is_too_long(mesh, to) ? PROM_VERDICT_LINK
+                                                                      : PROM_VERDICT_GOOD;
+}
+
 // Twice the area's vector; returns the longest edge's square.
 static float face_normal(const float a[3], const float b[3], const float c[3], float normal[3])
 {

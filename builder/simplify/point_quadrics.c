@@ -2,6 +2,7 @@
 
 #include "builder/simplify/work.h"
 
+#include <float.h>
 #include <math.h>
 
 // By taste: borders show as outlines, seams only by what lies on their wrong side.
@@ -167,7 +168,10 @@ void prom_point_quadrics_choose(const prom_point_quadrics *all, const prom_colla
         choose_on_edge(sum, from, place);
     const float value = prom_quadric_value(sum, place);
     const float weight = all->quadrics[collapse->from].w + all->quadrics[collapse->to].w;
-    result->cost = value + SHORT_FIRST * weight * squared;
+    // Between the sum over the faces, which looks after the mean distance, and their mean,
+    // which looks after the greatest: measured on Bunny and Dragon as good as the sum for the
+    // one (2 to 5 % better than the mean) and nearly as good as the mean for the other.
+    result->cost = (value + SHORT_FIRST * weight * squared) / sqrtf(fmaxf(weight, FLT_MIN));
     result->error = weight > 0 ? value / weight * all->radius * all->radius : 0;
     for (int k = 0; k < 3; k++) result->place[k] = to[k] + place[k] * all->radius;
 }
