@@ -11,11 +11,12 @@
 // Pieces of a surface meet within this share of its radius.
 #define WELD_TOLERANCE 1e-5f
 // By taste: how far above the target a result may be before a rougher means is used, how small
-// against the whole a component must be to be left out, and from which reduction on colours are
-// averaged.
+// against the whole a component must be to be left out, how near parts must be to become one,
+// and from which reduction on colours are averaged.
 #define NEAR_TARGET 1.3f
 #define SURFACE_TARGET 4.0f
 #define SPECK_EXTENT (1.0f / 24)
+#define PAIR_DISTANCE (1.0f / 48)
 enum { RECOLOR_BELOW = 4 };
 
 // The matrix for normals: the inverse transpose; a flat placement has none, its basis serves.
@@ -89,35 +90,39 @@ static bool above(const prom_work *work, const prom_index_array *faces, uint32_t
     return (float)prom_work_count(work, faces) > factor * (float)target;
 }
 
-// Edge collapse and thinned cards first, then without specks, then clustered vertices.
-static float reduce_objects(prom_work *work, uint32_t target, prom_index_array *faces)
+// Reduces from scratch; `out` holds the result's own vertices in the work until its reset.
+static void reduce(prom_work *work, const prom_reduce_options *options, uint32_t target,
+                   prom_index_array *out)
 {
-    prom_reduce_options options = {.target = target, .max_error = INFINITY, .plain = true};
-    float error = prom_work_reduce(work, &options, faces);
-    if (!above(work, faces, target, NEAR_TARGET)) return error;
+    prom_work_reset(work);
+    prom_reduction *reduction = prom_reduction_create(work, options);
+    prom_reduction_run(reduction, target, INFINITY, out);
+    prom_reduction_destroy(reduction);
+}
+
+// Parts may become one; where that is not enough, specks are left out.
+static void reduce_objects(prom_work *work, uint32_t target, prom_index_array *faces)
+{
+    const prom_reduce_options options = {
+        .merged = true, .loose = true, .pair_distance = PAIR_DISTANCE * work->diagonal};
+    reduce(work, &options, target, faces);
+    if (!above(work, faces, target, NEAR_TARGET)) return;
     double fronts = (double)work->indices.count / 3 / work->triangles;
     prom_work_drop_specks(work, (uint32_t)(target * fronts), SPECK_EXTENT * work->diagonal,
                           faces);
-    if (faces->count && !above(work, faces, target, NEAR_TARGET))
-        return fmaxf(error, prom_work_deviation(work, faces));
-    prom_work_reset(work);
-    options.sloppy = true;
-    return prom_work_reduce(work, &options, faces);
 }
 
 // The outer border stays, since the neighbour keeps it too. Where that leaves far too much, the
 // border gives way: its deviation is part of the error, and it may show as a crack of that
 // size.
-static float reduce_surface(prom_work *work, uint32_t target, prom_index_array *faces)
+static void reduce_surface(prom_work *work, uint32_t target, prom_index_array *faces)
 {
-    prom_reduce_options options = {
-        .target = target, .max_error = INFINITY, .lock_border = true, .plain = true};
-    float error = prom_work_reduce(work, &options, faces);
-    if (!above(work, faces, target, SURFACE_TARGET)) return error;
-    prom_work_reset(work);
+    prom_reduce_options options = {.merged = true, .lock_border = true};
+    reduce(work, &options, target, faces);
+    if (!above(work, faces, target, SURFACE_TARGET)) return;
     options.lock_border = false;
     options.keep_cards = true;
-    return prom_work_reduce(work, &options, faces);
+    reduce(work, &options, target, faces);
 }
 
 bool prom_cluster_mesh_make(const prom_cluster_piece *pieces, size_t count, bool surface,
@@ -140,11 +145,12 @@ bool prom_cluster_mesh_make(const prom_cluster_piece *pieces, size_t count, bool
     prom_index_array faces = {0};
     const prom_index_array *result = &faces;
     if (target_triangles < 1) target_triangles = 1;
-    if (work.triangles <= target_triangles)
+    if (work.triangles <= target_triangles) {
         result = &work.indices;
-    else
-        *error += surface ? reduce_surface(&work, target_triangles, &faces)
-                          : reduce_objects(&work, target_triangles, &faces);
+    } else {
+        (surface ? reduce_surface : reduce_objects)(&work, target_triangles, &faces);
+        *error += prom_work_deviation(&work, &faces);
+    }
     bool made = result->count > 0;
     if (made && result->count * RECOLOR_BELOW < work.indices.count)
         prom_work_recolor(&work, result, surface);

@@ -329,6 +329,31 @@ static void clusters_reach_their_target(void **state)
     prom_mesh_finish(&sphere);
 }
 
+// A wall of bricks with gaps: too many to keep a tetrahedron of each.
+static void loose_parts_become_one(void **state)
+{
+    (void)state;
+    enum { ROWS = 12, BRICKS = ROWS * ROWS };
+    const float half[3] = {0.45f, 0.45f, 0.2f}, origin[3] = {0};
+    prom_mesh brick, out;
+    prom_cluster_piece pieces[BRICKS];
+    prom_mesh_init_box(&brick, origin, half, NULL);
+    for (uint32_t i = 0; i < BRICKS; i++)
+        pieces[i] = piece_at(&brick, (double)(i % ROWS), (double)(i / ROWS));
+    for (uint32_t target = 400; target >= 200; target /= 2) {
+        float error;
+        assert_true(prom_cluster_mesh_make(pieces, BRICKS, false, target, &out, &error));
+        assert_sound(&out);
+        assert_in_range(out.index_count / 3, 1, target * 13 / 10);
+        assert_true(error > 0.05f && error < ROWS / 4); // more than a gap
+        const prom_box box = prom_mesh_bounds(&out);
+        assert_true(box.max[0] - box.min[0] > ROWS * 0.75f);
+        assert_true(box.max[2] - box.min[2] > ROWS * 0.75f);
+        prom_mesh_finish(&out);
+    }
+    prom_mesh_finish(&brick);
+}
+
 // Chunks of a surface: inner borders vanish, the outer border stays as it is.
 static void surfaces_keep_their_outline(void **state)
 {
@@ -449,6 +474,7 @@ int main(void)
         cmocka_unit_test(double_sided_parts_get_back_sides),
         cmocka_unit_test(pieces_are_placed),
         cmocka_unit_test(clusters_reach_their_target),
+        cmocka_unit_test(loose_parts_become_one),
         cmocka_unit_test(surfaces_keep_their_outline),
         cmocka_unit_test(far_reductions_average_colors),
         cmocka_unit_test(nothing_makes_nothing),

@@ -248,11 +248,7 @@ static uint32_t grown_vertex(prom_work *work, uint32_t vertex, const growing *g)
     prom_vertex v = work->vertices.data[vertex];
     for (int a = 0; a < 3; a++)
         v.position[a] = g->to[a] + (v.position[a] - g->from[a]) * g->factor;
-    uint32_t owner = work->owners.data[vertex], id = (uint32_t)work->vertices.count;
-    prom_array_push(&work->vertices, v);
-    prom_array_push(&work->owners, owner);
-    prom_array_push(&work->place, id);
-    return id;
+    return prom_work_append(work, &v, work->owners.data[vertex]);
 }
 
 void prom_work_thin_cards(prom_work *work, const prom_index_array *cards, uint32_t target,
@@ -268,8 +264,9 @@ void prom_work_thin_cards(prom_work *work, const prom_index_array *cards, uint32
     choose_kept(components, count, share, factors);
     prom_box bounds = PROM_BOX_EMPTY;
     for (uint32_t i = 0; i < count; i++) prom_box_add_box(&bounds, &components[i].box);
-    uint32_t *grown = prom_alloc(work->base_count, sizeof *grown);
-    memset(grown, 0xff, work->base_count * sizeof *grown);
+    const size_t vertices = work->vertices.count;
+    uint32_t *grown = prom_alloc(vertices, sizeof *grown);
+    memset(grown, 0xff, vertices * sizeof *grown);
     for (size_t i = 0; i < cards->count; i++) {
         const prom_component *c = &components[of[i / 3]];
         float factor = factors[of[i / 3]] * sqrtf(growth);

@@ -1,17 +1,30 @@
 #include "builder/simplify/reduce.h"
 
 #include "builder/simplify/cards.h"
-#include "builder/simplify/collapse.h"
-#include "builder/simplify/distance.h"
-#include "builder/simplify/keep.h"
+#include "builder/simplify/engine.h"
 
 #include <math.h>
 
-// Up to here every vertex and centroid is measured (MAX_SAMPLES of simplify_distance.c).
-enum { MEASURED_TRIANGLES = 10000 };
 // Cards of many triangles lose those first that cost no more than this share of a card's
 // extent.
 #define CARD_DETAIL 0.04f
+// By taste: of all triangles what holds the leaves gets this part at least. A trunk of few
+// triangles is seen more than its number says.
+enum { SOLID_SHARE = 8 };
+
+// Faces that are collapsed together.
+typedef struct part {
+    prom_collapse_mesh mesh;
+    prom_collapser *collapser;
+    uint32_t triangles; // at first
+} part;
+
+struct prom_reduction {
+    prom_work *work;
+    prom_reduce_options options;
+    part solid, cards;
+    float card_extent, card_area; // mean of one, sum of all
+};
 
 static float triangle_area(const prom_work *work, const uint32_t *t)
 {
@@ -19,6 +32,83 @@ static float triangle_area(const prom_work *work, const uint32_t *t)
     float cross[3];
     prom_triangle_cross(v[t[0]].position, v[t[1]].position, v[t[2]].position, cross);
     return glm_vec3_norm(cross) / 2;
+}
+
+static float area_of(const prom_work *work, const prom_index_array *faces)
+{
+    double area = 0;
+    for (size_t i = 0; i < faces->count; i += 3)
+        area += (double)triangle_area(work, faces->data + i);
+    return (float)area;
+}
+
+static void part_init(part *p, const prom_reduction *r, const prom_index_array *faces,
+                      float pair_distance)
+{
+    const prom_work *work = r->work;
+    const prom_collapse_options options = {.lock_border = r->options.lock_border,
+                                           .pair_distance = pair_distance,
+                                           .loose = r->options.loose};
+    p->triangles = (uint32_t)(faces->count / 3);
+    if (!p->triangles) return;
+    prom_collapse_mesh_init(&p->mesh, work->vertices.data, work->base_count, work->owners.data,
+                            faces->data, faces->count);
+    p->collapser = prom_collapser_create(&p->mesh, &options);
+}
+
+static void part_finish(part *p)
+{
+    if (!p->collapser) return;
+    prom_collapser_destroy(p->collapser);
+    prom_collapse_mesh_finish(&p->mesh);
+}
+
+// The faces that a part has left; vertices that collapses made are appended to the work.
+static void part_faces(const part *p, prom_work *work, prom_index_array *out)
+{
+    const prom_collapse_mesh *mesh = &p->mesh;
+    const size_t made = mesh->vertices.count - mesh->base_vertices;
+    uint32_t *ids = prom_alloc(made, sizeof *ids);
+    memset(ids, 0xff, made * sizeof *ids);
+    for (size_t c = 0; c < 3 * (size_t)mesh->triangle_slots; c++) {
+        uint32_t v = mesh->corners[c];
+        if (v == PROM_NONE) continue;
+        if (v >= mesh->base_vertices) {
+            uint32_t *id = &ids[v - mesh->base_vertices];
+            if (*id == PROM_NONE)
+                *id = prom_work_append(work, &mesh->vertices.data[v], mesh->group.data[v]);
+            v = *id;
+        }
+        prom_array_push(out, v);
+    }
+    prom_free(ids);
+}
+
+prom_reduction *prom_reduction_create(prom_work *work, const prom_reduce_options *options)
+{
+    prom_reduction *r = prom_calloc(1, sizeof *r);
+    r->work = work;
+    r->options = *options;
+    prom_index_array solid = {0}, cards = {0};
+    if (options->lock_border || options->keep_cards) {
+        part_init(&r->solid, r, &work->indices, options->pair_distance);
+    } else {
+        r->card_extent = prom_work_split_cards(work, !options->merged, &solid, &cards);
+        r->card_area = area_of(work, &cards);
+        part_init(&r->solid, r, &solid, options->pair_distance);
+        part_init(&r->cards, r, &cards, 0);
+    }
+    prom_array_finish(&solid);
+    prom_array_finish(&cards);
+    return r;
+}
+
+void prom_reduction_destroy(prom_reduction *r)
+{
+    if (!r) return;
+    part_finish(&r->solid);
+    part_finish(&r->cards);
+    prom_free(r);
 }
 
 // A submesh that has lost its last triangle gets its largest one back, so that its material
@@ -46,62 +136,46 @@ static void restore_vanished(const prom_work *work, prom_index_array *out)
     prom_free(present);
 }
 
-static float area_of(const prom_work *work, const prom_index_array *faces)
+// The part of the cards that stays where each may grow by `error` on each side.
+static float share_left(float extent, float error)
 {
-    double area = 0;
-    for (size_t i = 0; i < faces->count; i += 3) area += triangle_area(work, faces->data + i);
-    return (float)area;
+    const float grown = extent + 2 * error;
+    return extent * extent / (grown * grown);
 }
 
-static void reduce_cards(prom_work *work, const prom_index_array *cards, uint32_t target,
-                         float extent, bool plain, prom_index_array *out)
+static void run_cards(prom_reduction *r, uint32_t target, float max_error,
+                      prom_index_array *out)
 {
     prom_index_array flat = {0}, thinned = {0};
-    prom_collapse_options detail = {target, CARD_DETAIL * extent, false, plain};
-    float ignored; // the deviation is measured
-    prom_work_collapse(work, cards, &detail, &flat, &ignored);
-    float area = area_of(work, &flat);
-    float growth = area > 0 ? area_of(work, cards) / area : 1;
-    prom_work_thin_cards(work, &flat, target, growth, &thinned);
+    const float left = share_left(r->card_extent, max_error) * (float)r->cards.triangles;
+    if (target < (uint32_t)left) target = (uint32_t)left;
+    prom_collapser_run(r->cards.collapser, target,
+                       fminf(max_error, CARD_DETAIL * r->card_extent));
+    part_faces(&r->cards, r->work, &flat);
+    const float area = area_of(r->work, &flat);
+    prom_work_thin_cards(r->work, &flat, target, area > 0 ? r->card_area / area : 1, &thinned);
     for (size_t i = 0; i < thinned.count; i++) prom_array_push(out, thinned.data[i]);
     prom_array_finish(&flat);
     prom_array_finish(&thinned);
 }
 
-float prom_work_reduce(prom_work *work, const prom_reduce_options *options,
-                       prom_index_array *out)
+void prom_reduction_run(prom_reduction *r, uint32_t target, float max_error,
+                        prom_index_array *out)
 {
-    prom_index_array solid = {0}, cards = {0};
-    float card_extent = 0;
-    size_t fronts = work->indices.count / 3;
-    double ratio = fronts ? (double)options->target / work->triangles : 0;
-    if (options->lock_border || options->keep_cards) {
-        prom_array_reserve(&solid, work->indices.count);
-        memcpy(solid.data, work->indices.data, work->indices.count * sizeof *solid.data);
-        solid.count = work->indices.count;
-    } else {
-        card_extent = prom_work_split_cards(work, !options->plain, &solid, &cards);
+    prom_work *work = r->work;
+    const size_t fronts = work->indices.count / 3;
+    const double ratio = work->triangles ? (double)target / work->triangles : 0;
+    target = (uint32_t)(ratio * (double)fronts);
+    uint32_t solid_target = (uint32_t)(ratio * r->solid.triangles);
+    if (solid_target < target / SOLID_SHARE) solid_target = target / SOLID_SHARE;
+    if (solid_target > r->solid.triangles) solid_target = r->solid.triangles;
+    out->count = 0;
+    if (r->solid.collapser) {
+        prom_collapser_run(r->solid.collapser, solid_target, max_error);
+        part_faces(&r->solid, work, out);
     }
-    // In proportion, but an eighth at least for what holds the leaves: a trunk of few triangles
-    // is seen more than its number says (by taste).
-    uint32_t target = (uint32_t)(ratio * (double)fronts);
-    uint32_t solid_target = (uint32_t)(ratio * (double)(solid.count / 3));
-    if (solid_target < target / 8) solid_target = target / 8;
-    if (solid_target > solid.count / 3) solid_target = (uint32_t)(solid.count / 3);
-    if (solid_target < 1) solid_target = 1;
-    float estimate;
-    if (options->sloppy) {
-        prom_work_sloppy(work, &solid, solid_target, options->max_error, out, &estimate);
-    } else {
-        prom_collapse_options collapse = {solid_target, options->max_error,
-                                          options->lock_border, options->plain};
-        prom_work_collapse_keeping(work, &solid, &collapse, out, &estimate);
-    }
-    uint32_t card_target = target > solid_target ? target - solid_target : 0;
-    if (cards.count) reduce_cards(work, &cards, card_target, card_extent, options->plain, out);
-    if (!options->sloppy && !options->plain) restore_vanished(work, out);
-    prom_array_finish(&cards);
-    prom_array_finish(&solid);
-    float error = prom_work_deviation(work, out);
-    return fronts > MEASURED_TRIANGLES ? fmaxf(error, estimate) : error;
+    if (r->cards.collapser)
+        run_cards(r, target > solid_target ? target - solid_target : 0, max_error, out);
+    prom_work_find_places(work);
+    if (!r->options.merged) restore_vanished(work, out);
 }

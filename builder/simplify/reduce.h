@@ -1,23 +1,29 @@
-// Private to simplification: one reduction of a work's triangles, leaf cards apart from the
-// rest.
+// Private to simplification: a reduction of a work's triangles that goes on from step to step,
+// leaf cards apart from the rest: the engine collapses edges, cards are thinned.
 #ifndef PROM_SIMPLIFY_REDUCE_H
 #define PROM_SIMPLIFY_REDUCE_H
 
 #include "builder/simplify/work.h"
 
 typedef struct prom_reduce_options {
-    uint32_t target;  // triangles with back sides
-    float max_error;  // limit of the estimate, object units; INFINITY: none
-    bool lock_border; // open borders stay exactly; cards have nothing else and stay too
-    bool sloppy;      // cluster the vertices of what is no card
-    bool keep_cards;  // do not thin
-    bool plain;       // see prom_collapse_options; all cards are thinned, not only foliage
+    bool lock_border;    // open borders stay exactly; cards have nothing else and stay too
+    bool keep_cards;     // do not thin
+    bool merged;         // of many objects: all cards are thinned, not only foliage, and
+                         // submeshes may vanish
+    bool loose;          // see prom_collapse_options
+    float pair_distance; // the same
 } prom_reduce_options;
 
-// `out` gets the remaining front faces. Returns the greatest deviation: measured both ways (see
-// prom_work_deviation), and where a mesh is too large to measure at every vertex at least
-// meshoptimizer's estimate.
-float prom_work_reduce(prom_work *work, const prom_reduce_options *options,
-                       prom_index_array *out);
+typedef struct prom_reduction prom_reduction;
+
+// The work must outlive the reduction.
+prom_reduction *prom_reduction_create(prom_work *work, const prom_reduce_options *options);
+void prom_reduction_destroy(prom_reduction *reduction); // NULL is allowed
+// Goes on until at most `target` triangles (with back sides) are left, or whatever is left
+// would cost more than max_error (object units, INFINITY: no limit), by the estimates of the
+// metric; a card may grow by so much on each side. `out` gets the remaining front faces; their
+// new vertices are appended to the work.
+void prom_reduction_run(prom_reduction *reduction, uint32_t target, float max_error,
+                        prom_index_array *out);
 
 #endif

@@ -96,7 +96,7 @@ static void weld_corners(prom_work *work, const corner_key *keys, uint32_t count
     prom_free(first);
 }
 
-static void find_places(prom_work *work)
+void prom_work_find_places(prom_work *work)
 {
     uint32_t n = (uint32_t)work->vertices.count;
     place_key *keys = prom_alloc(n, sizeof *keys);
@@ -110,18 +110,25 @@ static void find_places(prom_work *work)
     prom_free(keys);
 }
 
+uint32_t prom_work_append(prom_work *work, const prom_vertex *vertex, uint32_t owner)
+{
+    const uint32_t id = (uint32_t)work->vertices.count;
+    const prom_vertex copy = *vertex; // which may be one of the work's
+    prom_array_push(&work->vertices, copy);
+    prom_array_push(&work->owners, owner);
+    prom_array_push(&work->place, id);
+    return id;
+}
+
 // The vertex for triangles with the given bits of an owner: itself, or a copy made once.
 static uint32_t clone_for(prom_work *work, uint32_t *clones, uint32_t vertex, uint32_t bits)
 {
     if (!bits) return vertex;
     uint32_t *clone = &clones[(size_t)vertex * PROM_OWNERS + bits];
     if (*clone != PROM_NONE) return *clone;
-    *clone = (uint32_t)work->vertices.count;
-    prom_vertex copy = work->vertices.data[vertex];
-    uint32_t owner = work->owners.data[vertex] | bits, place = work->place.data[vertex];
-    prom_array_push(&work->vertices, copy);
-    prom_array_push(&work->owners, owner);
-    prom_array_push(&work->place, place);
+    *clone =
+        prom_work_append(work, &work->vertices.data[vertex], work->owners.data[vertex] | bits);
+    work->place.data[*clone] = work->place.data[vertex];
     return *clone;
 }
 
@@ -161,7 +168,7 @@ void prom_work_init(prom_work *work, const prom_mesh *mesh)
     gather_corners(mesh, &keys, &count);
     weld_corners(work, keys, count);
     prom_free(keys);
-    find_places(work);
+    prom_work_find_places(work);
     uint8_t *marks = prom_calloc(count / 3, 1);
     prom_work_mark_sides(work, marks);
     apply_marks(work, marks);

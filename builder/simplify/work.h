@@ -32,7 +32,7 @@ static inline uint32_t prom_owner_submesh(uint32_t owner)
 }
 
 typedef struct prom_work {
-    prom_vertex_array vertices; // the first base_count are the mesh's; scaled cards follow
+    prom_vertex_array vertices; // the first base_count are the mesh's; made ones follow
     prom_index_array owners;    // per vertex: submesh * PROM_OWNERS + bits
     prom_index_array place;     // per vertex: the first vertex of this position and submesh
     prom_index_array indices;   // the mesh's front faces
@@ -47,6 +47,9 @@ typedef struct prom_work {
 // repeated.
 void prom_work_init(prom_work *work, const prom_mesh *mesh);
 void prom_work_finish(prom_work *work);
+// Adds a vertex and returns its number; prom_work_find_places has to follow the last.
+uint32_t prom_work_append(prom_work *work, const prom_vertex *vertex, uint32_t owner);
+void prom_work_find_places(prom_work *work);
 // Forgets the appended vertices.
 void prom_work_reset(prom_work *work);
 // Triangles of a list counted with their back sides.
