@@ -3,6 +3,7 @@
 #include "metaobj/base/clock.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 
 // A candidate that a guard turned away comes again when the others cost twice as much, so many
@@ -240,7 +241,8 @@ static void come_again(prom_collapser *c, prom_candidate e)
     c->left_out = true;
     if (!prom_step_evaluate(c, e.from, e.to, false, &step)) return;
     e.key *= COME_AGAIN;
-    if (e.key > 0 && e.key <= LAST_TIME * step.result.cost) prom_queue_push(&c->queue, &e);
+    if (e.key > 0 && e.key <= fminf(LAST_TIME * step.result.cost, FLT_MAX))
+        prom_queue_push(&c->queue, &e);
 }
 
 // Until the target is reached or no candidate is left.
