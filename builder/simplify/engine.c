@@ -214,7 +214,7 @@ static outcome attempt(prom_collapser *c, uint32_t from, uint32_t to, bool fixed
     if (!prom_step_evaluate(c, from, to, fixed, &step) || step.result.cost > most_cost)
         return REFUSED;
     if (step.result.error > limit) return TOO_MUCH;
-    const prom_verdict verdict = prom_step_judge(c, &step);
+    const prom_verdict verdict = prom_step_judge(c, &step, limit);
     count_rejected(c, verdict);
     if (verdict) return verdict == PROM_VERDICT_LINK ? AGAINST_LINK : REFUSED;
     prom_step_apply(c, &step);

@@ -48,7 +48,8 @@ typedef struct prom_step {
 // What merging would cost; false: it cannot be done. The step is good until the next call.
 bool prom_step_evaluate(prom_collapser *c, uint32_t from, uint32_t to, bool fixed,
                         prom_step *step);
-prom_verdict prom_step_judge(prom_collapser *c, const prom_step *step);
+// limit: of the error, squared.
+prom_verdict prom_step_judge(prom_collapser *c, const prom_step *step, float limit);
 // Does it, without looking for candidates.
 void prom_step_apply(prom_collapser *c, const prom_step *step);
 

@@ -99,10 +99,35 @@ static bool star_is_too_long(const prom_collapse_mesh *mesh, uint32_t point)
     return false;
 }
 
-prom_verdict prom_guard_stars(const prom_collapse_mesh *mesh, uint32_t from, uint32_t to)
+static bool star_is_of_edge(const prom_collapse_mesh *mesh, uint32_t point, uint32_t other)
 {
-    return star_is_too_long(mesh, from) || star_is_too_long(mesh, to) ? PROM_VERDICT_LINK
-                                                                      : PROM_VERDICT_GOOD;
+    for (uint32_t c = mesh->first_corner[point]; c != PROM_NONE; c = mesh->next_corner[c]) {
+        uint32_t o[2];
+        others(mesh, c, o);
+        if (o[0] != other && o[1] != other) return false;
+    }
+    return true;
+}
+
+bool prom_guard_last(const prom_collapse_mesh *mesh, uint32_t from, uint32_t to)
+{
+    return star_is_of_edge(mesh, from, to) && star_is_of_edge(mesh, to, from);
+}
+
+bool prom_guard_small(const prom_collapse_mesh *mesh, uint32_t from, uint32_t to, float squared)
+{
+    const float *a = mesh->position[from], *b = mesh->position[to];
+    if (glm_vec3_distance2((float *)a, (float *)b) > squared) return false;
+    for (uint32_t c = mesh->first_corner[from]; c != PROM_NONE; c = mesh->next_corner[c]) {
+        uint32_t o[2];
+        others(mesh, c, o);
+        if (o[0] != to && o[1] != to) continue;
+        float *third = mesh->position[o[0] == to ? o[1] : o[0]];
+        if (glm_vec3_distance2((float *)a, third) > squared ||
+            glm_vec3_distance2((float *)b, third) > squared)
+            return false;
+    }
+    return !star_is_too_long(mesh, from) && !star_is_too_long(mesh, to);
 }
 
 // Twice the area's vector; returns the longest edge's square.

@@ -31,8 +31,12 @@ typedef enum prom_verdict {
 // connections, if no triangle comes twice. `borders`: whether both are on open borders.
 prom_verdict prom_guard_link(const prom_collapse_mesh *mesh, prom_marks *marks, uint32_t from,
                              uint32_t to, bool borders);
-// Where connections may change: only that not too many triangles are around either.
-prom_verdict prom_guard_stars(const prom_collapse_mesh *mesh, uint32_t from, uint32_t to);
+// Whether the points have no triangles but those of their edge: a part would vanish.
+bool prom_guard_last(const prom_collapse_mesh *mesh, uint32_t from, uint32_t to);
+// Whether what goes is small: the points and all edges of the triangles that go are within a
+// distance, given squared.
+bool prom_guard_small(const prom_collapse_mesh *mesh, uint32_t from, uint32_t to,
+                      float squared);
 // The faces around both, if the merged point is at `place`.
 prom_verdict prom_guard_faces(const prom_collapse_mesh *mesh, uint32_t from, uint32_t to,
                               const float place[3]);
