@@ -23,7 +23,7 @@ static uint32_t triangles_of(const prom_mesh *mesh)
 static uint32_t add_levels(prom_work *work, bool lock_border, uint32_t min_triangles,
                            uint32_t max_levels, prom_mesh *levels, float *errors)
 {
-    const prom_reduce_options options = {.lock_border = lock_border};
+    const prom_reduce_options options = {.lock_border = lock_border, .loose = !lock_border};
     prom_reduction *reduction = prom_reduction_create(work, &options);
     prom_index_array faces = {0};
     uint32_t count = 1;
