@@ -5,9 +5,9 @@
 // one of `from` with one of `to`; where a seam forks or ends there, those that fit best. A
 // vertex that finds none becomes a vertex of its own at the merged point, with attributes that
 // the metric continues to there; where no vertex may be made, it becomes the vertex of `to` in
-// its group that fits best. Vertices whose triangles all go are added, where the texture goes on beside
-// them, to what fits them best, so that what they cost is not forgotten. So no seam forbids a
-// collapse: it costs what it spoils.
+// its group that fits best. Vertices whose triangles all go are added, where the texture goes
+// on beside them, to what fits them best, so that what they cost is not forgotten. So no seam
+// forbids a collapse: it costs what it spoils.
 #ifndef PROM_SIMPLIFY_SLOTS_H
 #define PROM_SIMPLIFY_SLOTS_H
 
