@@ -147,8 +147,8 @@ static const struct argp argp = {
         "view.\n\n"
         "JSON: {a, b: {path, triangles, vertices, diagonal_units, area_square_units, closed, "
         "volume_cubic_units}, volume_difference_percent, a_to_b, b_to_a: {mean, rms, max (each "
-        "_units and _percent of A's diagonal), max_from, max_to (relative to the centre of "
-        "A's bounds), normal_rms_degrees, samples}, rms and hausdorff (the greater of both "
+        "_units and _percent of A's diagonal), max_from, max_to (x, y, z), normal_rms_degrees, "
+        "samples}, rms and hausdorff (the greater of both "
         "ways), views, size_px, ppd, looks: [{metric, mean, object_mean, worst, "
         "worst_direction, views}]}; null where nothing is known.\n\n"
         "Exit codes: 0, 1 for a wrong option, 2 for meshes that cannot be read, 3 without GL, "
@@ -174,6 +174,7 @@ static prom_status read_files(job *j, prom_error *error)
         j->found.facts[i].path = paths[i];
         prom_mesh_facts_find(&j->files[i].mesh, &j->found.facts[i]);
     }
+    memcpy(j->found.origin, j->files[0].origin, sizeof j->found.origin);
     return PROM_OK;
 }
 

@@ -17,6 +17,7 @@ prom_status prom_command_walk(int argc, char **argv, prom_error *error);
 prom_status prom_command_calibrate(int argc, char **argv, prom_error *error);
 prom_status prom_command_compare(int argc, char **argv, prom_error *error);
 prom_status prom_command_compare_mesh(int argc, char **argv, prom_error *error);
+prom_status prom_command_simplify(int argc, char **argv, prom_error *error);
 prom_status prom_command_scene(int argc, char **argv, prom_error *error);
 
 typedef struct prom_command {

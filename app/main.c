@@ -18,6 +18,7 @@ static const prom_command commands[] = {
     {"calibrate", "", "measure what drawing costs here", prom_command_calibrate},
     {"compare", "A B", "tell how different two pictures look", prom_command_compare},
     {"compare-mesh", "A B", "tell how far apart two meshes are", prom_command_compare_mesh},
+    {"simplify", "IN -o OUT", "make a mesh of fewer triangles", prom_command_simplify},
     {"scene", "city|tile", "make a scene", prom_command_scene},
 };
 

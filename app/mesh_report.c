@@ -125,10 +125,12 @@ static json_t *facts_json(const prom_mesh_facts *f)
                      prom_json_number(f->closed ? f->volume : NAN));
 }
 
-static json_t *point_json(const double p[3])
+static json_t *point_json(const prom_mesh_comparison *c, const double p[3])
 {
-    return json_pack("[o, o, o]", prom_json_number(p[0]), prom_json_number(p[1]),
-                     prom_json_number(p[2]));
+    json_t *json = json_array();
+    for (int k = 0; k < 3; k++)
+        json_array_append_new(json, prom_json_number(c->origin[k] + p[k]));
+    return json;
 }
 
 // A distance, in units and in percent.
@@ -148,8 +150,8 @@ static json_t *way_json(const prom_mesh_comparison *c, const prom_one_way *way)
     set_distance(json, c, "mean", way->mean);
     set_distance(json, c, "rms", way->rms);
     set_distance(json, c, "max", way->max);
-    json_object_set_new(json, "max_from", point_json(way->from));
-    json_object_set_new(json, "max_to", point_json(way->to));
+    json_object_set_new(json, "max_from", point_json(c, way->from));
+    json_object_set_new(json, "max_to", point_json(c, way->to));
     json_object_set_new(json, "normal_rms_degrees", prom_json_number(way->normal_rms_degrees));
     json_object_set_new(json, "samples", json_integer((json_int_t)way->samples));
     return json;

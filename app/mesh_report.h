@@ -23,6 +23,7 @@ typedef struct prom_looks {
 
 typedef struct prom_mesh_comparison {
     prom_mesh_facts facts[2];
+    double origin[3]; // that both are relative to, in the scene's world
     prom_mesh_distances distances;
     uint32_t view_count, size_px; // no views: looks are not known
     double ppd;

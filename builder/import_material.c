@@ -239,8 +239,12 @@ void prom_import_materials(prom_import *import, const prom_import_use *uses,
     for (size_t i = 0; i < pictures.count; i++) {
         prom_import_picture *p = &pictures.data[i];
         prom_array_push(&import->source->images,
-                        (prom_source_image){(char *)(p->color ? p->color : p->mask), p->width,
-                                            p->height, p->rgba, p->missing});
+                        (prom_source_image){.name = (char *)(p->color ? p->color : p->mask),
+                                            .mask = (char *)(p->mask ? p->mask : ""),
+                                            .width = p->width,
+                                            .height = p->height,
+                                            .rgba = p->rgba,
+                                            .missing = p->missing});
     }
     prom_free(drafts);
     prom_array_finish(&pictures);

@@ -51,6 +51,7 @@ static void put_source(FILE *file, const prom_source *s)
     for (size_t i = 0; i < s->images.count; i++) {
         const prom_source_image *image = &s->images.data[i];
         put_text(file, image->name);
+        put_text(file, image->mask);
         put64(file, image->width);
         put64(file, image->height);
         put64(file, image->missing);
@@ -181,9 +182,10 @@ static char *get_text(reader *r, prom_arena *arena)
 
 static void get_images(reader *r, prom_source *s)
 {
-    uint32_t count = get_count(r, 36, "the count of pictures is wrong");
+    uint32_t count = get_count(r, 44, "the count of pictures is wrong");
     for (uint32_t i = 0; i < count && !r->wrong; i++) {
         prom_source_image image = {.name = get_text(r, &s->strings)};
+        image.mask = get_text(r, &s->strings);
         uint64_t width = get64(r), height = get64(r);
         image.missing = get64(r) != 0;
         bool good = width && height && width <= SIDE_LIMIT && height <= SIDE_LIMIT;

@@ -41,7 +41,16 @@ static void position(const double w[16], const float p[3], double out[3])
         out[r] = w[r] * p[0] + w[4 + r] * p[1] + w[8 + r] * p[2] + w[12 + r];
 }
 
-static void center_of(const placed_array *all, double center[3])
+// The origin where the mesh is near it, else a multiple of its size, of a power of two: a
+// difference to that has no more digits than the float had.
+static void make_round(double center[3], double size)
+{
+    const double step = size > 0 ? exp2(ceil(log2(size))) : 1;
+    for (int k = 0; k < 3; k++)
+        center[k] = fabs(center[k]) < 4 * step ? 0 : step * round(center[k] / step);
+}
+
+static void choose_origin(const placed_array *all, double center[3])
 {
     double min[3] = {INFINITY, INFINITY, INFINITY}, max[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (size_t i = 0; i < all->count; i++)
@@ -53,7 +62,12 @@ static void center_of(const placed_array *all, double center[3])
                 max[k] = fmax(max[k], p[k]);
             }
         }
-    for (int k = 0; k < 3; k++) center[k] = (min[k] + max[k]) / 2;
+    double size = 0;
+    for (int k = 0; k < 3; k++) {
+        center[k] = (min[k] + max[k]) / 2;
+        size = fmax(size, max[k] - min[k]);
+    }
+    make_round(center, size);
 }
 
 // Behind the first `vertices` and `indices` of out.
@@ -112,7 +126,7 @@ static prom_status make(const char *path, const placed_array *all, const double 
     if (origin)
         memcpy(file->origin, origin, sizeof file->origin);
     else
-        center_of(all, file->origin);
+        choose_origin(all, file->origin);
     join(all, file->origin, (uint32_t)vertices, (uint32_t)indices, &file->mesh);
     if (prom_mesh_check(&file->mesh, (uint32_t)file->source.materials.count))
         return prom_fail(error, PROM_ERR_INPUT, "%s: has positions that no float can hold",

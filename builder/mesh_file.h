@@ -11,8 +11,10 @@ typedef struct prom_mesh_file {
 } prom_mesh_file;
 
 // Reads whatever prom_source_import does; options: as there, NULL for its defaults. origin:
-// what positions become relative to; NULL: the centre of the bounds. Fails as import does, and
-// with PROM_ERR_UNSUPPORTED where instances make more than a mesh can hold; *file is then {0}.
+// what positions become relative to; NULL: a round place near the centre of the bounds, from
+// which floats of the file are told exactly, so that writing gives them back. Fails as import
+// does, and with PROM_ERR_UNSUPPORTED where instances make more than a mesh can hold; *file is
+// then {0}.
 prom_status prom_mesh_file_read(const char *path, const prom_import_options *options,
                                 const double origin[3], prom_mesh_file *file,
                                 prom_error *error);

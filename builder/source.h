@@ -12,6 +12,7 @@
 // A decoded picture: sRGB RGBA8, first row on top, at most max_texture_px on a side.
 typedef struct prom_source_image {
     char *name;             // as the scene names it
+    char *mask;             // the picture that its alpha came from, if another; else ""
     uint32_t width, height; // 1x1 neutral grey when it was missing or broken
     uint8_t *rgba;
     bool missing;

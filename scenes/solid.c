@@ -34,8 +34,11 @@ uint32_t prom_solid_write(const prom_solid *shape, prom_glb *glb, const char *na
     for (size_t i = 0; i < shape->parts.count; i++) {
         const prom_solid_part *p = &shape->parts.data[i];
         if (!p->indices.count) continue;
-        parts[n++] = (prom_glb_part){p->material, p->vertices.data, p->indices.data,
-                                     (uint32_t)p->vertices.count, (uint32_t)p->indices.count};
+        parts[n++] = (prom_glb_part){.material = p->material,
+                                     .vertices = p->vertices.data,
+                                     .indices = p->indices.data,
+                                     .vertex_count = (uint32_t)p->vertices.count,
+                                     .index_count = (uint32_t)p->indices.count};
     }
     uint32_t mesh = prom_glb_add_mesh(glb, name, parts, n);
     prom_free(parts);

@@ -3,8 +3,8 @@
 #ifndef PROM_SCENES_SOLID_H
 #define PROM_SCENES_SOLID_H
 
+#include "builder/glb_writer.h"
 #include "metaobj/base/alloc.h"
-#include "scenes/glb_writer.h"
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -6,9 +6,9 @@
 
 #include <cmocka.h>
 
+#include "builder/glb_writer.h"
 #include "metaobj/base/alloc.h"
 #include "scenes/city.h"
-#include "scenes/glb_writer.h"
 #include "scenes/path.h"
 
 #include <jansson.h>
@@ -678,7 +678,11 @@ static void test_wide_indices(void **unused)
         }
         uint32_t indices[3] = {0, 1, n - 1};
         prom_glb_material material = {.name = "m", .image = PROM_GLB_NONE};
-        prom_glb_part part = {prom_glb_add_material(out, &material), vertices, indices, n, 3};
+        prom_glb_part part = {.material = prom_glb_add_material(out, &material),
+                              .vertices = vertices,
+                              .indices = indices,
+                              .vertex_count = n,
+                              .index_count = 3};
         uint32_t mesh = prom_glb_add_mesh(out, "mesh", &part, 1);
         prom_glb_add_node(
             out, &(prom_glb_node){

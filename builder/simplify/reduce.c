@@ -1,7 +1,7 @@
 #include "builder/simplify/reduce.h"
 
 #include "builder/simplify/cards.h"
-#include "builder/simplify/engine.h"
+#include "builder/simplify/mesh_collapse.h"
 
 #include <math.h>
 
@@ -61,27 +61,6 @@ static void part_finish(part *p)
     if (!p->collapser) return;
     prom_collapser_destroy(p->collapser);
     prom_collapse_mesh_finish(&p->mesh);
-}
-
-// The faces that a part has left; vertices that collapses made are appended to the work.
-static void part_faces(const part *p, prom_work *work, prom_index_array *out)
-{
-    const prom_collapse_mesh *mesh = &p->mesh;
-    const size_t made = mesh->vertices.count - mesh->base_vertices;
-    uint32_t *ids = prom_alloc(made, sizeof *ids);
-    memset(ids, 0xff, made * sizeof *ids);
-    for (size_t c = 0; c < 3 * (size_t)mesh->triangle_slots; c++) {
-        uint32_t v = mesh->corners[c];
-        if (v == PROM_NONE) continue;
-        if (v >= mesh->base_vertices) {
-            uint32_t *id = &ids[v - mesh->base_vertices];
-            if (*id == PROM_NONE)
-                *id = prom_work_append(work, &mesh->vertices.data[v], mesh->group.data[v]);
-            v = *id;
-        }
-        prom_array_push(out, v);
-    }
-    prom_free(ids);
 }
 
 prom_reduction *prom_reduction_create(prom_work *work, const prom_reduce_options *options)
@@ -151,12 +130,22 @@ static void run_cards(prom_reduction *r, uint32_t target, float max_error,
     if (target < (uint32_t)left) target = (uint32_t)left;
     prom_collapser_run(r->cards.collapser, target,
                        fminf(max_error, CARD_DETAIL * r->card_extent));
-    part_faces(&r->cards, r->work, &flat);
+    prom_collapse_mesh_faces(&r->cards.mesh, r->work, &flat);
     const float area = area_of(r->work, &flat);
     prom_work_thin_cards(r->work, &flat, target, area > 0 ? r->card_area / area : 1, &thinned);
     for (size_t i = 0; i < thinned.count; i++) prom_array_push(out, thinned.data[i]);
     prom_array_finish(&flat);
     prom_array_finish(&thinned);
+}
+
+// What goes where connections change must be small against the error allowed, so this grows
+// step by step where there is no limit.
+static void run_solid(prom_reduction *r, uint32_t target, float max_error)
+{
+    const float most = r->work->diagonal;
+    for (float e = most / 4096; r->options.loose && e < fminf(max_error, most); e *= 2)
+        prom_collapser_run(r->solid.collapser, target, e);
+    prom_collapser_run(r->solid.collapser, target, max_error);
 }
 
 void prom_reduction_run(prom_reduction *r, uint32_t target, float max_error,
@@ -171,8 +160,8 @@ void prom_reduction_run(prom_reduction *r, uint32_t target, float max_error,
     if (solid_target > r->solid.triangles) solid_target = r->solid.triangles;
     out->count = 0;
     if (r->solid.collapser) {
-        prom_collapser_run(r->solid.collapser, solid_target, max_error);
-        part_faces(&r->solid, work, out);
+        run_solid(r, solid_target, max_error);
+        prom_collapse_mesh_faces(&r->solid.mesh, work, out);
     }
     if (r->cards.collapser)
         run_cards(r, target > solid_target ? target - solid_target : 0, max_error, out);

@@ -8,8 +8,8 @@
 // Vertices, indices and pictures go to a temporary file beside the target at once, so that
 // memory holds only the nodes. A failure is kept and reported by finish; until then the
 // functions may be called on (they do nothing). The file appears complete or not at all.
-#ifndef PROM_SCENES_GLB_WRITER_H
-#define PROM_SCENES_GLB_WRITER_H
+#ifndef PROM_BUILDER_GLB_WRITER_H
+#define PROM_BUILDER_GLB_WRITER_H
 
 #include "metaobj/base/status.h"
 
@@ -28,6 +28,7 @@ typedef struct prom_glb_vertex {
 typedef struct prom_glb_part {
     uint32_t material;
     const prom_glb_vertex *vertices;
+    const uint16_t (*colors)[4]; // per vertex: linear, straight alpha, 65535 = 1; NULL: white
     const uint32_t *indices;
     uint32_t vertex_count, index_count; // both above 0
 } prom_glb_part;

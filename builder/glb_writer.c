@@ -1,6 +1,6 @@
 // glTF 2.0 specification (Khronos Group, 2021), section 4 for the binary container: a header of
 // 12 bytes, then a JSON and a BIN chunk, all sizes 32-bit, chunks padded to 4 bytes.
-#include "scenes/glb_writer.h"
+#include "builder/glb_writer.h"
 
 #include "metaobj/base/alloc.h"
 
@@ -23,7 +23,7 @@
 #define DUMP_FLAGS (JSON_COMPACT | JSON_REAL_PRECISION(9))
 
 enum {
-    TYPE_UINT16 = 5123,
+    TYPE_UINT16 = 5123, // indices, colours
     TYPE_UINT32 = 5125,
     TYPE_FLOAT = 5126,
     TARGET_VERTICES = 34962,
@@ -219,10 +219,20 @@ static void write_indices(prom_glb *glb, const prom_glb_part *part, bool wide)
     pad_bin(glb);
 }
 
-static json_t *add_primitive(prom_glb *glb, const prom_glb_part *part)
+static json_int_t add_colors(prom_glb *glb, const prom_glb_part *part)
 {
-    assert(part->vertex_count && part->index_count && part->index_count % 3 == 0);
-    assert(part->material < json_array_size(glb->materials));
+    const uint64_t start = glb->bin_bytes;
+    write_bin(glb, part->colors, (size_t)part->vertex_count * sizeof *part->colors);
+    const json_int_t view = add_view(glb, start, sizeof *part->colors, TARGET_VERTICES);
+    const json_int_t color =
+        add_accessor(glb, view, 0, TYPE_UINT16, part->vertex_count, "VEC4");
+    json_object_set_new(json_array_get(glb->accessors, (size_t)color), "normalized",
+                        json_true());
+    return color;
+}
+
+static json_t *add_attributes(prom_glb *glb, const prom_glb_part *part)
+{
     uint64_t start = glb->bin_bytes;
     write_bin(glb, part->vertices, (size_t)part->vertex_count * sizeof *part->vertices);
     json_int_t view = add_view(glb, start, sizeof *part->vertices, TARGET_VERTICES);
@@ -233,15 +243,26 @@ static json_t *add_primitive(prom_glb *glb, const prom_glb_part *part)
                                      part->vertex_count, "VEC3");
     json_int_t uv = add_accessor(glb, view, offsetof(prom_glb_vertex, uv), TYPE_FLOAT,
                                  part->vertex_count, "VEC2");
+    json_t *attributes =
+        json_pack("{s:I, s:I, s:I}", "POSITION", position, "NORMAL", normal, "TEXCOORD_0", uv);
+    if (part->colors)
+        json_object_set_new(attributes, "COLOR_0", json_integer(add_colors(glb, part)));
+    return attributes;
+}
+
+static json_t *add_primitive(prom_glb *glb, const prom_glb_part *part)
+{
+    assert(part->vertex_count && part->index_count && part->index_count % 3 == 0);
+    assert(part->material < json_array_size(glb->materials));
+    json_t *attributes = add_attributes(glb, part);
     bool wide = part->vertex_count > UINT16_MAX; // 65535 itself restarts a primitive
-    start = glb->bin_bytes;
+    const uint64_t start = glb->bin_bytes;
     write_indices(glb, part, wide);
     json_int_t indices =
         add_accessor(glb, add_view(glb, start, 0, TARGET_INDICES), 0,
                      wide ? TYPE_UINT32 : TYPE_UINT16, part->index_count, "SCALAR");
-    return json_pack("{s:{s:I, s:I, s:I}, s:I, s:I}", "attributes", "POSITION", position,
-                     "NORMAL", normal, "TEXCOORD_0", uv, "indices", indices, "material",
-                     (json_int_t)part->material);
+    return json_pack("{s:o, s:I, s:I}", "attributes", attributes, "indices", indices,
+                     "material", (json_int_t)part->material);
 }
 
 uint32_t prom_glb_add_mesh(prom_glb *glb, const char *name, const prom_glb_part *parts,
