@@ -11,8 +11,11 @@
 // By taste: the least and greatest error of a level, as parts of the mesh's diagonal, and from
 // one to the next.
 #define FIRST_ERROR (1.0f / 4096)
-#define LAST_ERROR (1.0f / 8)
+#define LAST_ERROR (1.0f / 6)
 #define ERROR_STEP 2.25f
+// Where much falls away within one step of the error, a level keeps this share of the one
+// before; the first takes whatever costs next to nothing.
+#define LEAST_SHARE 0.4f
 
 static uint32_t triangles_of(const prom_mesh *mesh)
 {
@@ -27,16 +30,19 @@ static uint32_t add_levels(prom_work *work, bool lock_border, uint32_t min_trian
     prom_reduction *reduction = prom_reduction_create(work, &options);
     prom_index_array faces = {0};
     uint32_t count = 1;
-    for (float e = FIRST_ERROR; e <= LAST_ERROR && count < max_levels; e *= ERROR_STEP) {
+    float e = FIRST_ERROR;
+    while (e <= LAST_ERROR && count < max_levels) {
         const uint32_t last = triangles_of(&levels[count - 1]);
         if (last <= min_triangles) break;
-        prom_reduction_run(reduction, 0, e * work->diagonal, &faces);
+        const uint32_t target = count > 1 ? (uint32_t)(LEAST_SHARE * (float)last) : 0;
+        prom_reduction_run(reduction, target, e * work->diagonal, &faces);
         const uint32_t triangles = prom_work_count(work, &faces);
         if (triangles && (float)triangles <= WORTH * (float)last) {
             errors[count] = fmaxf(prom_work_deviation(work, &faces), errors[count - 1]);
             prom_work_emit(work, &faces, &levels[count++]);
         }
         prom_work_reset(work);
+        if (triangles > target) e *= ERROR_STEP;
     }
     prom_array_finish(&faces);
     prom_reduction_destroy(reduction);

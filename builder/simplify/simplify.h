@@ -7,10 +7,10 @@
 #include <stdbool.h>
 
 // Levels of a leaf, by error: level 0 is the mesh itself, welded; of the others, each costs
-// about 2.25 times the error of the one before, that is about a step that can be seen, and has
-// at most 0.7 of its triangles. The first costs a quarter of a pixel where the mesh is a
-// thousand pixels wide, the last at most one pixel where it is eight pixels wide, and none
-// comes after one of min_triangles or fewer.
+// about 2.25 times the error of the one before, that is about a step that can be seen, or less
+// where that would leave less than 0.4 of its triangles, and has at most 0.7 of these. The
+// first costs a quarter of a pixel where the mesh is a thousand pixels wide, the last at most
+// one pixel where it is six pixels wide, and none comes after one of min_triangles or fewer.
 //
 // All submeshes are collapsed together, so that borders between them do not crack, and each
 // keeps a triangle; leaf cards are thinned and grow so that the foliage's area stays; sheets
