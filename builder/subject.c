@@ -15,8 +15,9 @@
 #define MOST_LAYERS 64.0
 
 // By taste: so much more accurate, in the mean over its bins, a mesh with an atlas must be than
-// one without.
+// one without; and a level than the next, at some size.
 #define ATLAS_GAIN 0.02f
+#define LEVEL_GAIN 0.01f
 
 // ---- drawing
 
@@ -171,20 +172,27 @@ static uint32_t main_shading(const prom_build_state *b, const prom_mesh *mesh)
     return most;
 }
 
+// Over the directions that were looked from at a size.
+static float mean_of_size(const prom_accuracy_row *row, uint32_t size)
+{
+    const bool large = size >= PROM_SIZES;
+    const uint32_t dirs = large ? PROM_DIRS_LARGE : PROM_DIRS;
+    float sum = 0.0f;
+    for (uint32_t d = 0; d < dirs; d++)
+        sum += prom_accuracy_of_byte(large ? row->large[d][size - PROM_SIZES]
+                                           : row->bins[d][size]);
+    return sum / (float)dirs;
+}
+
 // The near-field function through the rows of a mesh. What is measured along the axes alone
 // counts by how much lower it is than there at the largest of the other sizes.
 static float fit_near(const prom_accuracy_row *row, float error, float radius)
 {
     enum { SIZES = PROM_SIZES + PROM_SIZES_LARGE };
-    float e_px[SIZES], mean[SIZES] = {0}, axes = 0.0f;
-    for (uint32_t d = 0; d < PROM_DIRS; d++)
-        for (uint32_t s = 0; s < PROM_SIZES; s++)
-            mean[s] += prom_accuracy_of_byte(row->bins[d][s]) / PROM_DIRS;
-    for (uint32_t d = 0; d < PROM_DIRS_LARGE; d++) {
+    float e_px[SIZES], mean[SIZES], axes = 0.0f;
+    for (uint32_t s = 0; s < SIZES; s++) mean[s] = mean_of_size(row, s);
+    for (uint32_t d = 0; d < PROM_DIRS_LARGE; d++)
         axes += prom_accuracy_of_byte(row->bins[d][PROM_SIZES - 1]) / PROM_DIRS_LARGE;
-        for (uint32_t s = PROM_SIZES; s < SIZES; s++)
-            mean[s] += prom_accuracy_of_byte(row->large[d][s - PROM_SIZES]) / PROM_DIRS_LARGE;
-    }
     for (uint32_t s = 0; s < SIZES; s++) {
         e_px[s] = error * prom_size_of_bin(s) / (2.0f * radius);
         if (s >= PROM_SIZES) mean[s] = mean[PROM_SIZES - 1] - fmaxf(axes - mean[s], 0.0f);
@@ -278,12 +286,36 @@ static void choose(prom_subject *s)
     }
 }
 
+static bool shows_as_well(const prom_candidate *c, const prom_candidate *other)
+{
+    for (uint32_t s = 0; s < PROM_SIZES + PROM_SIZES_LARGE; s++)
+        if (mean_of_size(&c->result.accuracy, s) + LEVEL_GAIN <
+            mean_of_size(&other->result.accuracy, s))
+            return false;
+    return c->rep.max_size_px >= other->rep.max_size_px;
+}
+
+// A level of ours is of no use where the next, which costs less, shows as well.
+static void thin_levels(prom_subject *s)
+{
+    const prom_candidate *next = NULL;
+    for (uint32_t i = s->count < s->first_made ? s->count : s->first_made; i-- > 0;) {
+        prom_candidate *c = &s->candidates[i];
+        if (!c->kept) continue;
+        c->outdone = next && is_measured_mesh(c) && !(c->rep.flags & PROM_REP_ARTIST) &&
+                     shows_as_well(next, c);
+        c->kept = !c->outdone;
+        if (c->kept) next = c;
+    }
+}
+
 static prom_status measure_and_settle(prom_subject *s, const prom_subject_class *class,
                                       uint32_t index, prom_error *error)
 {
     wait_for_measures(s);
     for (uint32_t i = 0; i < s->count; i++) settle(s, &s->candidates[i]);
     choose(s);
+    thin_levels(s);
     uint32_t settled = s->count;
     s->comparison_count = 0;
     prom_status status = class->amend ? class->amend(s, index, error) : PROM_OK;
