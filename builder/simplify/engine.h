@@ -24,8 +24,8 @@ typedef struct prom_collapse_options {
     const uint8_t *locked; // per original vertex, nonzero: it stays, exactly; NULL: none
     float pair_distance;   // points of different pieces closer than this are candidates too
                            // (virtual edges; Garland and Heckbert 1997, section 3.2); 0: none
-    bool loose; // connections may change where what goes is no longer than twice max_error:
-                // holes close, parts become one or vanish; not with records
+    bool loose; // connections may change where what goes is no longer than max_error: holes
+                // close, parts become one or vanish; not with records
     prom_records *records; // NULL: nothing is recorded; of the mesh's triangle_slots
 } prom_collapse_options;
 

@@ -25,15 +25,14 @@ bool prom_step_evaluate(prom_collapser *c, uint32_t from, uint32_t to, bool fixe
            isfinite(place[1]) && isfinite(place[2]);
 }
 
-// What goes is within the error of its middle where it is no longer than twice the error.
 prom_verdict prom_step_judge(prom_collapser *c, const prom_step *step, float limit)
 {
     const uint32_t from = step->collapse.from, to = step->collapse.to;
     const bool borders = c->points[from].flags & c->points[to].flags & PROM_POINT_BORDER;
     prom_verdict verdict = prom_guard_link(c->mesh, &c->marks, from, to, borders);
     if (verdict ? c->options.loose : prom_guard_last(c->mesh, from, to))
-        verdict = prom_guard_small(c->mesh, from, to, 4 * limit) ? PROM_VERDICT_GOOD
-                                                                 : PROM_VERDICT_LINK;
+        verdict =
+            prom_guard_small(c->mesh, from, to, limit) ? PROM_VERDICT_GOOD : PROM_VERDICT_LINK;
     return verdict ? verdict : prom_guard_faces(c->mesh, from, to, step->result.place);
 }
 

@@ -13,6 +13,7 @@
 #define FIRST_ERROR (1.0f / 4096)
 #define LAST_ERROR (1.0f / 6)
 #define ERROR_STEP 2.25f
+#define FINE_STEP 1.5f // at which it is seen whether a level is worth it
 // Where much falls away within one step of the error, a level keeps this share of the one
 // before; the first takes whatever costs next to nothing.
 #define LEAST_SHARE 0.4f
@@ -30,19 +31,21 @@ static uint32_t add_levels(prom_work *work, bool lock_border, uint32_t min_trian
     prom_reduction *reduction = prom_reduction_create(work, &options);
     prom_index_array faces = {0};
     uint32_t count = 1;
-    float e = FIRST_ERROR;
+    float e = FIRST_ERROR, least = FIRST_ERROR; // for the next level
     while (e <= LAST_ERROR && count < max_levels) {
         const uint32_t last = triangles_of(&levels[count - 1]);
         if (last <= min_triangles) break;
         const uint32_t target = count > 1 ? (uint32_t)(LEAST_SHARE * (float)last) : 0;
         prom_reduction_run(reduction, target, e * work->diagonal, &faces);
         const uint32_t triangles = prom_work_count(work, &faces);
-        if (triangles && (float)triangles <= WORTH * (float)last) {
+        const bool enough = triangles <= target;
+        if (triangles && (float)triangles <= WORTH * (float)last && (e >= least || enough)) {
             errors[count] = fmaxf(prom_work_deviation(work, &faces), errors[count - 1]);
             prom_work_emit(work, &faces, &levels[count++]);
+            least = e * ERROR_STEP;
         }
         prom_work_reset(work);
-        if (triangles > target) e *= ERROR_STEP;
+        if (!enough) e *= FINE_STEP;
     }
     prom_array_finish(&faces);
     prom_reduction_destroy(reduction);
