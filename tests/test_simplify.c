@@ -221,6 +221,45 @@ static void notable_parts_do_not_vanish(void **state)
     prom_mesh_finish(&out);
 }
 
+// Boxes in a row, each twice the size of the one before.
+static void only_what_is_small_vanishes(void **state)
+{
+    (void)state;
+    enum { BOXES = 8 };
+    const float least = 0.004f, limit = 0.1f;
+    prom_mesh box, mesh, out;
+    prom_mesh_init(&mesh, BOXES * 24, BOXES * 36, 1);
+    mesh.vertex_count = mesh.index_count = 0;
+    for (uint32_t i = 0; i < BOXES; i++) {
+        const float side = least * (float)(1u << i), half[3] = {side / 2, side / 2, side / 2};
+        const float center[3] = {(float)i, 0, 0};
+        prom_mesh_init_box(&box, center, half, NULL);
+        for (uint32_t k = 0; k < box.index_count; k++)
+            mesh.indices[mesh.index_count++] = mesh.vertex_count + box.indices[k];
+        memcpy(mesh.vertices + mesh.vertex_count, box.vertices,
+               box.vertex_count * sizeof *box.vertices);
+        mesh.vertex_count += box.vertex_count;
+        prom_mesh_finish(&box);
+    }
+    mesh.submeshes[0] = (prom_submesh){0, mesh.index_count, 0};
+    for (int loose = 0; loose < 2; loose++) {
+        float error;
+        bool left[BOXES] = {false};
+        const prom_reduce_options options = {.loose = loose, .keep_cards = true};
+        assert_true(reduce_mesh(&mesh, &options, 0, limit, &out, &error));
+        assert_sound(&out);
+        for (uint32_t i = 0; i < out.vertex_count; i++)
+            left[lroundf(out.vertices[i].position[0])] = true;
+        for (uint32_t i = 0; i < BOXES; i++) {
+            const float side = least * (float)(1u << i);
+            if (side > limit || !loose) assert_true(left[i]);
+            if (side < limit / 4 && loose) assert_false(left[i]);
+        }
+        prom_mesh_finish(&out);
+    }
+    prom_mesh_finish(&mesh);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -231,6 +270,7 @@ int main(void)
         cmocka_unit_test(two_sided_sheets_stay),
         cmocka_unit_test(hard_edges_do_not_stop_it),
         cmocka_unit_test(notable_parts_do_not_vanish),
+        cmocka_unit_test(only_what_is_small_vanishes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
