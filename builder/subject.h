@@ -116,6 +116,24 @@ prom_status prom_subjects_run(prom_build_state *b, const prom_subject_class *cla
                               const uint32_t *index_of, uint32_t count, prom_progress *progress,
                               prom_error *error);
 
+static inline float prom_subject_radius(const prom_subject *s)
+{
+    return s->build->prototypes[s->prototype].radius;
+}
+
+static inline bool prom_candidate_is_measured_mesh(const prom_candidate *c)
+{
+    return c->admission == PROM_ADMIT_MEASURED && c->rep.kind == PROM_REP_MESH;
+}
+
+// ---- settling (subject_settle.c)
+
+// Completes the candidates from `first` on by what was measured, and says which may be kept.
+void prom_subject_settle(prom_subject *s, uint32_t first);
+// Of a mesh and the same with an atlas one is kept, and of levels those that show more than a
+// cheaper one.
+void prom_subject_choose(prom_subject *s);
+
 // Writes a settled subject (subject_write.c).
 prom_status prom_subject_write(prom_subject *s, prom_error *error);
 
