@@ -22,10 +22,10 @@ enum { PROM_ATTRIBUTES = 9 };
 // group, so 1 says that a texture that slides by a centimetre is as bad as a surface that moves
 // by one.
 typedef struct prom_metric_weights {
-    float normal; // [0.5] of the mean edge's length: of normals that differ by one radian
-    float uv;     // [1]
+    float normal; // [0.1] of the mean edge's length: of normals that differ by one radian
+    float uv;     // [0.3]
     float color;  // [0.5] of the mesh's radius x 0.02: of black against white
-    float border; // [10] of quadrics on open borders against the faces'; of seams a tenth
+    float border; // [1.5] of quadrics on open borders against the faces'; of seams a tenth
 } prom_metric_weights;
 
 // One candidate: `from` moves into `to`. Their vertices become those of the merged point: all

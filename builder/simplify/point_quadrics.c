@@ -6,7 +6,7 @@
 #include <math.h>
 
 // By taste: borders show as outlines, seams only by what lies on their wrong side.
-#define BORDER_WEIGHT 10.0f
+#define BORDER_WEIGHT 1.5f // by the same models as the weights of the attributes
 #define SEAM_PART 0.1f
 // A place further from the edge's middle than so many lengths of it is refused: there the
 // planes say nothing about the faces.
@@ -163,7 +163,9 @@ void prom_point_quadrics_choose(const prom_point_quadrics *all, const prom_colla
     prom_point_quadrics_offset(all, to, all->mesh->position[collapse->from], from);
     const float squared = glm_vec3_norm2(from);
     glm_vec3_scale(from, 0.5f, middle);
+    // Twice: what draws the first towards the middle draws the second only towards the first.
     if (!collapse->fixed && (!prom_quadric_minimum(sum, middle, place) ||
+                             !prom_quadric_minimum(sum, place, place) ||
                              glm_vec3_distance2(place, middle) > FAR * FAR * squared))
         choose_on_edge(sum, from, place);
     const float value = prom_quadric_value(sum, place);
